@@ -1,0 +1,96 @@
+# Everything a developer or a new user types. Needs Python >= 3.11 with pip and venv, and make; nothing else.
+#
+#   make demo    decide the robustness of a real network exactly, with a certificate, and check it independently
+#   make test    the fast tests and every example in a docstring
+#   make help    all targets
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+SHELL := /bin/sh
+
+# The first Python that is new enough; `make PYTHON=/path/to/python demo` overrides it.
+PYTHON ?= $(firstword $(foreach p,python3 python3.14 python3.13 python3.12 python3.11 python,$(shell \
+	$(p) -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && echo $(p))))
+
+VENV := .venv
+BIN := $(VENV)/bin
+# Where the system splits ensurepip off its Python, the second line brings pip in through the system's own.
+# The stamp is written last and only on success, so an interrupted installation is taken up again by the next make.
+READY := $(VENV)/installed-from-lock
+LOCK := requirements.lock
+BUILD := build
+JOBS ?= 2
+
+# A real backbone (SNDlib di-yuan, 11 nodes) with r* = 5.
+DEMO_GRAPH := topohub:sndlib/di-yuan
+DEMO_R := 5
+DEMO_CERTIFICATE := $(BUILD)/demo/di-yuan-$(DEMO_R)-robust.cert
+DEMO_CANONICAL := $(BUILD)/demo/di-yuan.graph
+
+.PHONY: help demo venv test test-slow lint types docs coverage-kernel bench bench-quick wheel lock clean
+
+help: ## list the targets
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */\1\t/' | expand -t 18
+
+# --no-deps: the lock is whole, and a resolver that looked further would trip over any release newer than the lock.
+# `pip check` then proves that nothing was missing from it.
+$(READY): $(LOCK) pyproject.toml
+	@test -n "$(PYTHON)" || { echo "Python 3.11 or newer is needed and none was found: make PYTHON=/path/to/python" >&2; exit 3; }
+	@rm -f $@
+	$(BIN)/python -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV) || \
+		{ $(PYTHON) -m venv --clear --without-pip $(VENV) && $(PYTHON) -m pip --python $(BIN)/python install --quiet pip; }
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --no-deps -r $(LOCK)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	$(BIN)/python -m pip check --disable-pip-version-check >/dev/null
+	@touch $@
+
+venv: $(READY) ## the virtual environment, exactly as locked
+
+# The last line is the independent verification: the kernel alone, on a Python without any installed package (-S).
+demo: $(READY) ## certify a real topology and verify the certificate with the kernel alone
+	@mkdir -p $(dir $(DEMO_CERTIFICATE))
+	$(BIN)/robustness check $(DEMO_GRAPH)
+	$(BIN)/robustness certify $(DEMO_GRAPH) -r $(DEMO_R) -o $(DEMO_CERTIFICATE) --canonical $(DEMO_CANONICAL)
+	$(BIN)/robustness verify $(DEMO_GRAPH) $(DEMO_CERTIFICATE) --expect robust -r $(DEMO_R)
+	$(PYTHON) -S -m certificates verify $(DEMO_CANONICAL) $(DEMO_CERTIFICATE)
+
+test: $(READY) ## the fast tests and the examples in the docstrings
+	$(BIN)/python -m pytest -q -n $(JOBS) -m "not slow"
+
+test-slow: $(READY) ## the exhaustive sweeps
+	$(BIN)/python -m pytest -q -n $(JOBS) -m slow
+
+coverage-kernel: $(READY) ## every branch of the trusted kernel is taken by its own tests
+	$(BIN)/python -m pytest -q tests/certificates --cov=certificates --cov-fail-under=100 --cov-report=term-missing
+
+lint: $(READY) ## ruff
+	$(BIN)/ruff check .
+
+types: $(READY) ## mypy --strict
+	$(BIN)/mypy
+
+docs: $(READY) ## the documentation, warnings as errors, into build/docs
+	$(BIN)/python -m sphinx -W --keep-going -q -b html docs $(BUILD)/docs
+	@echo "documentation: $(BUILD)/docs/index.html"
+
+bench: $(READY) ## the full benchmark
+	$(BIN)/python -m benchmarks
+
+bench-quick: $(READY) ## the benchmark in a minute or two
+	$(BIN)/python -m benchmarks --quick
+
+wheel: $(READY) ## the wheel, into build/dist
+	$(BIN)/python -m pip wheel --quiet --no-deps --no-build-isolation --wheel-dir $(BUILD)/dist .
+
+lock: ## resolve requirements.lock anew (the only target that does not use it)
+	$(PYTHON) -m venv $(BUILD)/lock
+	$(BUILD)/lock/bin/python -m pip install --quiet --disable-pip-version-check pip-tools
+	cp pyproject.toml README.md LICENSE $(BUILD)/lock/
+	cd $(BUILD)/lock && bin/pip-compile --quiet --upgrade --all-extras --generate-hashes --allow-unsafe --strip-extras --no-header \
+		--no-annotate --no-emit-options --no-emit-index-url --no-emit-trusted-host --no-emit-find-links -o resolved.txt pyproject.toml
+	{ echo "# Every package of every extra, pinned with hashes for all platforms. Written by 'make lock'; do not edit."; \
+		cat $(BUILD)/lock/resolved.txt; } > $(LOCK)
+
+clean: ## what the other targets made, but not the virtual environment
+	rm -rf $(BUILD) dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage .coverage.* *.egg-info
+	find robustness certificates cli tests benchmarks examples docs -name __pycache__ -type d -prune -exec rm -rf {} +
