@@ -1,0 +1,31 @@
+"""The trusted kernel: checks robustness certificates with the standard library alone.
+
+>>> from certificates import verify  # verify(graph_bytes, certificate_bytes) -> VerifiedClaim
+>>> from certificates import verify_joint  # verify_joint(sequence_bytes, certificate_bytes) -> VerifiedJointClaim
+>>> from certificates import verify_tolerance  # (graph_bytes, certificate_bytes) -> VerifiedToleranceClaim
+"""
+
+from certificates.errors import (
+    CertificateError,
+    MalformedCertificate,
+    MalformedGraph,
+    Misuse,
+    RejectedCertificate,
+)
+from certificates.joint import VerifiedJointClaim, verify_joint
+from certificates.tolerance import VerifiedToleranceClaim, verify_tolerance
+from certificates.verification import VerifiedClaim, verify
+
+__all__ = [
+    "CertificateError",
+    "MalformedCertificate",
+    "MalformedGraph",
+    "Misuse",
+    "RejectedCertificate",
+    "VerifiedClaim",
+    "VerifiedJointClaim",
+    "VerifiedToleranceClaim",
+    "verify",
+    "verify_joint",
+    "verify_tolerance",
+]

@@ -1,0 +1,197 @@
+"""Tolerance: a certificate that f malicious nodes can hold two groups of a network apart, or that they cannot.
+
+Let f >= 0. Three sets M, S1, S2 and the normal members ``N_k = S_k - M``, both nonempty. With *two* faces M, S1 and S2
+are disjoint and every node of N_k hears at most f nodes outside ``S_k | M`` (a trap); with *one* face S1 and S2 are
+disjoint, M lies in their union, and every node of N_k hears at most f nodes outside S_k (a violation). M is bounded
+in *total*, ``|M| <= f``, or *locally*: every node outside M hears at most f nodes of M.
+
+What such sets mean for consensus is no business of the kernel. docs/certificate-format.md has the format.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+from math import comb
+from typing import Any
+
+from certificates.errors import MalformedCertificate, Misuse, RejectedCertificate
+from certificates.graph import CanonicalGraph, decode_graph, encode_graph
+from certificates.strict_json import parse
+from certificates.verification import MAX_CERTIFICATE_BYTES, _id_set, _keys, _kind, _shown, _split, verify
+
+__all__ = ["FORMAT", "VerifiedToleranceClaim", "verify_tolerance", "without"]
+
+FORMAT = "robustness/tolerance-certificate/1"
+
+_MOST = 2**31
+
+
+@dataclass(frozen=True, slots=True)
+class VerifiedToleranceClaim:
+    """What was proven about which graph, and by which kind of evidence."""
+
+    #: ``"apart"``: the sets exist. ``"together"``: they do not.
+    verdict: str
+    f: int
+    faces: int
+    bound: str
+    evidence: str
+    sha256: str
+    nodes: int
+    arcs: int
+    #: Ordinary certificates that were verified.
+    certificates: int = 0
+    #: Nodes of search trees that were replayed in them.
+    tree_nodes: int = 0
+
+    def __str__(self) -> str:
+        kind = "trap" if self.faces == 2 else "violation"
+        word = "has a" if self.verdict == "apart" else "has no"
+        return (
+            f"the graph with {self.nodes} nodes, {self.arcs} arcs and SHA-256 {self.sha256} {word} "
+            f"{kind} for f = {self.f} in {self.bound} (evidence: {self.evidence})"
+        ).replace("in local", "locally")
+
+
+def verify_tolerance(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedToleranceClaim:
+    """Return the claim that ``certificate_bytes`` proves about the graph in ``graph_bytes``.
+
+    Parameters
+    ----------
+    graph_bytes : bytes
+        The canonical graph, or a node-link JSON document of it.
+    certificate_bytes : bytes
+        A tolerance certificate as docs/certificate-format.md defines it.
+
+    Raises
+    ------
+    Misuse
+        When an argument is not bytes.
+    MalformedCertificate
+        When the bytes are not of the formats (``MalformedGraph`` for the graph).
+    RejectedCertificate
+        When the certificate does not prove its claim about this graph.
+    """
+    if not all(isinstance(data, bytes) for data in (graph_bytes, certificate_bytes)):
+        raise Misuse("verify_tolerance takes two bytes objects: the graph and the certificate")
+    if len(certificate_bytes) > MAX_CERTIFICATE_BYTES:
+        raise MalformedCertificate(f"a certificate has at most {MAX_CERTIFICATE_BYTES} bytes")
+    header, body = _split(certificate_bytes)
+    document = parse(header, MalformedCertificate, "the certificate")
+    document = _keys(document, "the certificate", "format graph claim evidence")
+    if document["format"] != FORMAT:
+        raise MalformedCertificate(f"the format is {FORMAT!r}, not {_shown(document['format'])}")
+    f, faces, bound, verdict = _claim(_keys(document["claim"], "the claim", "f faces bound verdict"))
+    graph = decode_graph(graph_bytes)
+    if document["graph"] != graph.sha256:
+        raise RejectedCertificate(f"the certificate is about another graph: this one has SHA-256 {graph.sha256}")
+    evidence, kind = document["evidence"], _kind(document["evidence"])
+    used = tree_nodes = 0
+    match verdict, kind:
+        case "apart", "sets":
+            _check_sets(graph, f, faces, bound, _keys(evidence, "the evidence", "kind M S1 S2"))
+            if body:
+                raise MalformedCertificate(f"{len(body)} bytes follow the header, but sets have no body")
+        case "together", "robust":
+            _keys(evidence, "the evidence", "kind")
+            used, tree_nodes = 1, _check_robust(encode(graph), body, 2 * f + 1)
+        case "together", "removals":
+            lengths = _keys(evidence, "the evidence", "kind lengths")["lengths"]
+            used, tree_nodes = _check_removals(graph, f, (faces, bound), lengths, body)
+        case _:
+            raise MalformedCertificate(f"there is no evidence of kind {_shown(kind)} for the verdict {verdict!r}")
+    return VerifiedToleranceClaim(
+        verdict, f, faces, bound, kind, graph.sha256, graph.n, graph.arc_count, used, tree_nodes
+    )
+
+
+def _claim(claim: dict[str, Any]) -> tuple[int, int, str, str]:
+    f, faces, bound, verdict = (claim[key] for key in ("f", "faces", "bound", "verdict"))
+    if type(f) is not int or not 0 <= f <= _MOST:
+        raise MalformedCertificate(f"f is an integer in 0..{_MOST}")
+    if type(faces) is not int or faces not in (1, 2):
+        raise MalformedCertificate("faces is 1 or 2")
+    if bound not in ("total", "local"):
+        raise MalformedCertificate(f"a bound is 'total' or 'local', not {_shown(bound)}")
+    if verdict not in ("apart", "together"):
+        raise MalformedCertificate(f"a verdict is 'apart' or 'together', not {_shown(verdict)}")
+    return f, faces, bound, verdict
+
+
+def _check_sets(graph: CanonicalGraph, f: int, faces: int, bound: str, evidence: dict[str, Any]) -> None:
+    """The definition, clause by clause."""
+    M, S1, S2 = (set(_id_set(evidence[name], graph.n, name)) for name in ("M", "S1", "S2"))
+    if S1 & S2 or not S1 - M or not S2 - M:
+        raise RejectedCertificate("S1 and S2 are not disjoint with a normal node in each")
+    if faces == 2 and M & (S1 | S2):
+        raise RejectedCertificate("with two faces M is outside S1 and S2")
+    if faces == 1 and M - S1 - S2:
+        raise RejectedCertificate("with one face M lies inside S1 and S2")
+    if bound == "total" and len(M) > f:
+        raise RejectedCertificate(f"M has {len(M)} nodes, more than f = {f}")
+    if bound == "local":
+        for i, heard in enumerate(graph.hears):
+            if i not in M and len(M.intersection(heard)) > f:
+                raise RejectedCertificate(f"node {i} is outside M and hears more than f = {f} nodes of M")
+    for side in (S1, S2):
+        inside = side | M if faces == 2 else side
+        for i in side - M:
+            if sum(j not in inside for j in graph.hears[i]) > f:
+                raise RejectedCertificate(f"node {i} hears more than f = {f} nodes outside its side")
+
+
+def _check_robust(graph_bytes: bytes, certificate: bytes, r: int) -> int:
+    """The ordinary certificate proves r-robustness; return the tree nodes replayed.
+
+    A (2f+1)-robust graph keeps together: of any two disjoint nonempty N1, N2 one has a node that hears 2f + 1 nodes
+    outside its own. At most f of these are in M, however M is bounded, so f + 1 lie outside ``N_k | M``, hence S_k.
+    """
+    claim = verify(graph_bytes, certificate)
+    if (claim.verdict, claim.r, claim.s) != ("robust", r, 1):
+        raise RejectedCertificate(f"the ordinary certificate proves another claim than {r}-robustness")
+    return claim.tree_nodes
+
+
+def _check_removals(
+    graph: CanonicalGraph, f: int, kind: tuple[int, str], lengths: Any, body: bytes
+) -> tuple[int, int]:
+    """On n >= f + 2 nodes there is a trap in total iff for some M of exactly f nodes ``G - M`` is not (f+1)-robust.
+
+    Of a trap with fewer, move nodes into M: from outside all three sets first, then from the larger of S1 and S2. The
+    ordinary certificates are for the sets M in lexicographic order.
+    """
+    if kind != (2, "total"):
+        raise MalformedCertificate("removals are evidence for two faces in total only")
+    if not isinstance(lengths, list) or not all(type(each) is int and each > 0 for each in lengths):
+        raise MalformedCertificate("lengths is a list of positive integers")
+    if sum(lengths) != len(body):
+        raise MalformedCertificate(f"the lengths add up to {sum(lengths)} bytes, but {len(body)} follow the header")
+    if graph.n < f + 2:
+        raise RejectedCertificate(f"removals need at least f + 2 = {f + 2} nodes")
+    if len(lengths) != comb(graph.n, f):
+        raise RejectedCertificate(f"there are {comb(graph.n, f)} sets of {f} nodes, but {len(lengths)} certificates")
+    place = tree_nodes = 0
+    for removed, length in zip(combinations(range(graph.n), f), lengths, strict=True):
+        tree_nodes += _check_robust(without(graph, removed), body[place : place + length], f + 1)
+        place += length
+    return len(lengths), tree_nodes
+
+
+def encode(graph: CanonicalGraph) -> bytes:
+    """Return the canonical bytes of a decoded graph."""
+    return without(graph, ())
+
+
+def without(graph: CanonicalGraph, removed: tuple[int, ...]) -> bytes:
+    """Return the canonical bytes of the graph without some nodes; the others keep their labels and their order."""
+    gone = set(removed)
+    kept = [i for i in range(graph.n) if i not in gone]
+    place = {i: k for k, i in enumerate(kept)}
+    return encode_graph([graph.labels[i] for i in kept], sorted(_arcs(graph, place)))
+
+
+def _arcs(graph: CanonicalGraph, place: dict[int, int]) -> Iterator[tuple[int, int]]:
+    for i, k in place.items():
+        yield from ((place[j], k) for j in graph.hears[i] if j in place)

@@ -1,0 +1,210 @@
+"""The one entry of the kernel: graph bytes and certificate bytes in, a verified claim out, or an error."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+from certificates.errors import MalformedCertificate, Misuse, RejectedCertificate
+from certificates.graph import CanonicalGraph, decode_graph
+from certificates.refutation import check_refutation
+from certificates.strict_json import parse
+
+__all__ = ["FORMAT", "MAX_CERTIFICATE_BYTES", "VerifiedClaim", "verify"]
+
+FORMAT = "robustness/certificate/1"
+
+#: Bytes of a certificate that are read at most.
+MAX_CERTIFICATE_BYTES = 2**30
+_MAX_HEADER_BYTES = 2**26
+
+
+@dataclass(frozen=True, slots=True)
+class VerifiedClaim:
+    """What was proven about which graph, and by which kind of evidence."""
+
+    verdict: str
+    r: int
+    s: int
+    evidence: str
+    sha256: str
+    nodes: int
+    arcs: int
+    #: Nodes of the search tree that were replayed; 0 without a refutation.
+    tree_nodes: int = 0
+
+    def __str__(self) -> str:
+        word = "is" if self.verdict == "robust" else "is not"
+        return (
+            f"the graph with {self.nodes} nodes, {self.arcs} arcs and SHA-256 {self.sha256} {word} "
+            f"({self.r},{self.s})-robust (evidence: {self.evidence})"
+        )
+
+
+def verify(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedClaim:
+    """Return the claim that ``certificate_bytes`` proves about the graph in ``graph_bytes``.
+
+    Parameters
+    ----------
+    graph_bytes : bytes
+        The canonical graph, or a node-link JSON document of it.
+    certificate_bytes : bytes
+        A certificate as docs/certificate-format.md defines it.
+
+    Raises
+    ------
+    Misuse
+        When an argument is not bytes.
+    MalformedCertificate
+        When the bytes are not of the formats (``MalformedGraph`` for the graph).
+    RejectedCertificate
+        When the certificate does not prove its claim about this graph.
+    """
+    if not all(isinstance(data, bytes) for data in (graph_bytes, certificate_bytes)):
+        raise Misuse("verify takes two bytes objects: the graph and the certificate")
+    if len(certificate_bytes) > MAX_CERTIFICATE_BYTES:
+        raise MalformedCertificate(f"a certificate has at most {MAX_CERTIFICATE_BYTES} bytes")
+    header, body = _split(certificate_bytes)
+    document = parse(header, MalformedCertificate, "the certificate")
+    document = _keys(document, "the certificate", "format graph claim evidence")
+    if document["format"] != FORMAT:
+        raise MalformedCertificate(f"the format is {FORMAT!r}, not {_shown(document['format'])}")
+    claim = _keys(document["claim"], "the claim", "property r s verdict")
+    evidence = document["evidence"]
+    graph = decode_graph(graph_bytes)
+    if document["graph"] != graph.sha256:
+        raise RejectedCertificate(f"the certificate is about another graph: this one has SHA-256 {graph.sha256}")
+    r, s = _claim_numbers(claim, graph.n)
+    kind, verdict = _kind(evidence), claim["verdict"]
+    if verdict == "robust" and r > (graph.n + 1) // 2:
+        # Lemma 2; on one node, where no pair exists, it is the convention.
+        raise RejectedCertificate(f"no graph on {graph.n} node(s) is ({r},{s})-robust: r is at most ceil(n/2)")
+    tree_nodes = 0
+    match verdict, kind:
+        case "not-robust", "violation":
+            _check_violation(graph, r, s, _keys(evidence, "the evidence", "kind S1 S2"))
+        case "robust", "degree" | "refutation":
+            tree_nodes = _check_direct(graph, r, s, _keys(evidence, "the evidence", "kind"), body)
+        case "robust", "growth":
+            tree_nodes = _check_growth(graph, r, s, _keys(evidence, "the evidence", "kind seed order proof"), body)
+        case "robust" | "not-robust", _:
+            raise MalformedCertificate(f"there is no evidence of kind {_shown(kind)} for the verdict {verdict!r}")
+        case _:
+            raise MalformedCertificate(f"a verdict is 'robust' or 'not-robust', not {_shown(verdict)}")
+    if kind in ("violation", "degree") and body:
+        raise MalformedCertificate(f"{len(body)} bytes follow the header, but evidence of kind {kind!r} has no body")
+    return VerifiedClaim(verdict, r, s, kind, graph.sha256, graph.n, graph.arc_count, tree_nodes)
+
+
+def _split(data: bytes) -> tuple[bytes, bytes]:
+    """Return header and body: the first line, and all that follows it."""
+    end = data.find(b"\n", 0, _MAX_HEADER_BYTES)
+    if end < 0:
+        raise MalformedCertificate("a certificate begins with one line of JSON that ends with a newline")
+    return data[:end], data[end + 1 :]
+
+
+def _keys(value: Any, what: str, keys: str) -> dict[str, Any]:
+    """Return ``value`` when it is an object with exactly these keys."""
+    if not isinstance(value, dict) or set(value) != set(keys.split()):
+        raise MalformedCertificate(f"{what} is an object with exactly the keys {keys}")
+    return value
+
+
+def _kind(evidence: Any) -> str:
+    kind = evidence.get("kind") if isinstance(evidence, dict) else None
+    if type(kind) is not str:
+        raise MalformedCertificate("the evidence is an object with a 'kind'")
+    return kind
+
+
+def _shown(value: object) -> str:
+    """Return a short text for ``value`` that never walks into nested input."""
+    return repr(value[:40]) if isinstance(value, str) else f"a value of type {type(value).__name__}"
+
+
+def _claim_numbers(claim: dict[str, Any], n: int) -> tuple[int, int]:
+    """Return r and s of a claim in range: r >= 1 and 1 <= s <= n, on at least one node."""
+    if claim["property"] != "rs-robust":
+        raise MalformedCertificate(f"the property is 'rs-robust', not {_shown(claim['property'])}")
+    r, s = claim["r"], claim["s"]
+    if type(r) is not int or type(s) is not int or not 1 <= r <= 2**31:
+        raise MalformedCertificate("r and s are integers and r is at least 1")
+    if not 1 <= s <= n:
+        raise MalformedCertificate(f"s lies in 1..n = 1..{n}, not {s}")
+    return r, s
+
+
+def _id_set(value: Any, n: int, what: str) -> list[int]:
+    """Return a strictly ascending list of ids."""
+    ids = _id_list(value, n, what)
+    if any(not a < b for a, b in pairwise(ids)):
+        raise MalformedCertificate(f"{what} is strictly ascending")
+    return ids
+
+
+def _id_list(value: Any, n: int, what: str) -> list[int]:
+    if not isinstance(value, list) or not all(type(i) is int and 0 <= i < n for i in value):
+        raise MalformedCertificate(f"{what} is a list of ids in 0..{n - 1}")
+    return value
+
+
+def _check_violation(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any]) -> None:
+    """The definition: S1 and S2 are nonempty and disjoint, neither is all r-reachable, fewer than s nodes are."""
+    pair = [set(_id_set(evidence[name], graph.n, name)) for name in ("S1", "S2")]
+    if not pair[0] or not pair[1] or pair[0] & pair[1]:
+        raise RejectedCertificate("S1 and S2 are not nonempty and disjoint")
+    reachable = [sum(len([j for j in graph.hears[i] if j not in S]) >= r for i in S) for S in pair]
+    if reachable[0] == len(pair[0]) or reachable[1] == len(pair[1]) or sum(reachable) >= s:
+        raise RejectedCertificate(
+            f"the pair does not violate ({r},{s})-robustness: {reachable[0]} of {len(pair[0])} and {reachable[1]} of "
+            f"{len(pair[1])} nodes have at least {r} in-neighbours outside their set"
+        )
+
+
+def _check_direct(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any], body: bytes) -> int:
+    """Evidence that needs no other: a degree bound or a refutation; return the tree nodes replayed.
+
+    degree  Lemma 3: in-degrees of at least floor(n/2) + r - 1 make the graph (r,s)-robust for every s, since the
+            smaller set of any pair has at most floor(n/2) nodes, so each of its nodes hears at least r outside.
+    """
+    if evidence["kind"] == "refutation":
+        return check_refutation(graph, r, s, body)
+    least = min(map(len, graph.hears))
+    if evidence["kind"] != "degree":
+        raise MalformedCertificate(f"a proof is of kind 'degree' or 'refutation', not {_shown(evidence['kind'])}")
+    if least < graph.n // 2 + r - 1:
+        raise RejectedCertificate(f"the least in-degree {least} is below floor(n/2) + r - 1 = {graph.n // 2 + r - 1}")
+    return 0
+
+
+def _check_growth(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any], body: bytes) -> int:
+    """Lemma 4: a node that hears at least r + s - 1 nodes of an (r,s)-robust graph can be added to it.
+
+    The seed is the subgraph induced on ``seed``, proven by ``proof`` (of kind degree or refutation); ``order`` lists
+    every other node once.
+    """
+    seed = _id_set(evidence["seed"], graph.n, "seed")
+    order = _id_list(evidence["order"], graph.n, "order")
+    proof = _keys(evidence["proof"], "the proof of the seed", "kind")
+    if sorted(seed + order) != list(range(graph.n)):
+        raise RejectedCertificate("seed and order together do not list every node once")
+    if len(seed) < s:
+        raise RejectedCertificate(f"a seed of {len(seed)} nodes cannot be ({r},{s})-robust: s is at most its size")
+    index = {node: i for i, node in enumerate(seed)}
+    induced = CanonicalGraph(
+        tuple(graph.labels[i] for i in seed),
+        tuple(tuple(index[j] for j in graph.hears[i] if j in index) for i in seed),
+        "",
+    )
+    tree_nodes = _check_direct(induced, r, s, proof, body)
+    if proof["kind"] == "degree" and body:
+        raise MalformedCertificate(f"{len(body)} bytes follow the header, but a proof of kind 'degree' has no body")
+    present = set(seed)
+    for node in order:
+        heard = sum(j in present for j in graph.hears[node])
+        if heard < r + s - 1:
+            raise RejectedCertificate(f"node {node} hears {heard} earlier nodes, below r + s - 1 = {r + s - 1}")
+        present.add(node)
+    return tree_nodes
