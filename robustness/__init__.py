@@ -1,0 +1,98 @@
+"""Exact graph robustness for resilient consensus, with evidence anybody can check."""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+from robustness.algorithms import ALGORITHMS
+from robustness.certification import certify
+from robustness.checking import (
+    check_rs_robustness,
+    determine_robustness,
+    is_r_robust,
+    is_rs_robust,
+    robustness_profile,
+)
+from robustness.definitions import r_reachable_nodes
+from robustness.digraph import Digraph, GraphWarning
+from robustness.errors import (
+    InternalError,
+    InvalidGraph,
+    InvalidParameter,
+    MissingExtra,
+    RobustnessError,
+    Undecided,
+    UnreadableTopology,
+)
+from robustness.results import Bound, Bounds, RobustnessResult, Verdict, Witness
+
+if TYPE_CHECKING:
+    from robustness.files import read_topology, write_topology
+    from robustness.graph_search import find_graph
+    from robustness.threat_models import ToleranceResult, tolerance
+    from robustness.time_varying import (
+        JointResult,
+        TimeVaryingGraph,
+        certify_joint,
+        check_joint_robustness,
+        joint_curve,
+    )
+
+#: Names whose modules are imported when they are first asked for.
+_LATER = {
+    "JointResult": "robustness.time_varying",
+    "TimeVaryingGraph": "robustness.time_varying",
+    "ToleranceResult": "robustness.threat_models",
+    "certify_joint": "robustness.time_varying",
+    "check_joint_robustness": "robustness.time_varying",
+    "constructions": "robustness.constructions",
+    "find_graph": "robustness.graph_search",
+    "joint_curve": "robustness.time_varying",
+    "read_topology": "robustness.files",
+    "tolerance": "robustness.threat_models",
+    "write_topology": "robustness.files",
+}
+
+__all__ = [
+    "ALGORITHMS",
+    "Bound",
+    "Bounds",
+    "Digraph",
+    "GraphWarning",
+    "InternalError",
+    "InvalidGraph",
+    "InvalidParameter",
+    "JointResult",
+    "MissingExtra",
+    "RobustnessError",
+    "RobustnessResult",
+    "TimeVaryingGraph",
+    "ToleranceResult",
+    "Undecided",
+    "UnreadableTopology",
+    "Verdict",
+    "Witness",
+    "certify",
+    "certify_joint",
+    "check_joint_robustness",
+    "check_rs_robustness",
+    "determine_robustness",
+    "find_graph",
+    "is_r_robust",
+    "is_rs_robust",
+    "joint_curve",
+    "r_reachable_nodes",
+    "read_topology",
+    "robustness_profile",
+    "tolerance",
+    "write_topology",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Import what only some users need when they ask for it, so that ``import robustness`` stays fast."""
+    if name not in _LATER:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module = importlib.import_module(_LATER[name])
+    return module if name == "constructions" else getattr(module, name)

@@ -1,0 +1,55 @@
+"""Every error this package raises on purpose.
+
+::
+
+    RobustnessError (Exception)
+    ├── InvalidGraph (also ValueError)       the input is not a graph the definitions speak about
+    ├── InvalidParameter (also ValueError)   r, s, f, a limit or an option is out of range
+    ├── UnreadableTopology (also ValueError) a file or a name does not yield a graph
+    ├── MissingExtra (also ImportError)      an optional package is not installed
+    ├── Undecided (also TimeoutError)        a limit stopped the search; nothing is claimed
+    └── InternalError (also RuntimeError)    an algorithm contradicted itself; a bug, never a verdict
+
+A message names the rule, the value and the fix, in one line. A network that is not robust is an
+answer, not an error.
+"""
+
+from __future__ import annotations
+
+__all__ = [
+    "InternalError",
+    "InvalidGraph",
+    "InvalidParameter",
+    "MissingExtra",
+    "RobustnessError",
+    "Undecided",
+    "UnreadableTopology",
+]
+
+
+class RobustnessError(Exception):
+    """Base of every error in this package."""
+
+
+class InvalidGraph(RobustnessError, ValueError):
+    """The input is not a graph the definitions speak about."""
+
+
+class InvalidParameter(RobustnessError, ValueError):
+    """A parameter is out of its range."""
+
+
+class UnreadableTopology(RobustnessError, ValueError):
+    """A file, a stream or a name does not yield a graph."""
+
+
+class MissingExtra(RobustnessError, ImportError):
+    """An optional package that this call needs is not installed."""
+
+
+class Undecided(RobustnessError, TimeoutError):
+    """A limit stopped the search before the question was decided; nothing is claimed."""
+
+
+class InternalError(RobustnessError, RuntimeError):
+    """An algorithm contradicted itself. This is a bug; no verdict was produced."""

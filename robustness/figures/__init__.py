@@ -1,0 +1,1 @@
+"""Pictures of results; matplotlib (the extra ``plot``) is imported when one is drawn."""

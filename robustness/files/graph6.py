@@ -1,0 +1,142 @@
+"""graph6, sparse6 and digraph6 (McKay): one graph a file, nodes ``0..n-1``; networkx reads and writes them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from robustness.digraph import Digraph
+from robustness.errors import InvalidGraph, UnreadableTopology
+from robustness.files.text import parsed_by_networkx, warn_lossy
+
+__all__ = [
+    "NODE_LIMIT",
+    "decode_digraph6",
+    "decode_graph6",
+    "decode_sparse6",
+    "encode_digraph6",
+    "encode_graph6",
+    "encode_sparse6",
+    "warn_of_lost_labels",
+]
+
+#: The most nodes that are read: nine bytes of sparse6 can announce 2**36.
+NODE_LIMIT = 1_000_000
+
+
+def decode_graph6(data: bytes) -> Digraph:
+    """Return the undirected graph of a graph6 line."""
+    import networkx as nx
+
+    return _decode(data, b">>graph6<<", b"", lambda line: nx.from_graph6_bytes(line))
+
+
+def decode_sparse6(data: bytes) -> Digraph:
+    """Return the undirected graph of a sparse6 line."""
+    import networkx as nx
+
+    return _decode(data, b">>sparse6<<", b":", lambda line: nx.from_sparse6_bytes(line))
+
+
+def decode_digraph6(data: bytes) -> Digraph:
+    """Return the digraph of a digraph6 line."""
+    return _decode(data, b">>digraph6<<", b"&", _digraph_of)
+
+
+def encode_graph6(graph: Digraph) -> bytes:
+    """Return an undirected ``graph`` as a graph6 line."""
+    import networkx as nx
+
+    return bytes(nx.to_graph6_bytes(_undirected(graph, "graph6"), header=False))
+
+
+def encode_sparse6(graph: Digraph) -> bytes:
+    """Return an undirected ``graph`` as a sparse6 line."""
+    import networkx as nx
+
+    return bytes(nx.to_sparse6_bytes(_undirected(graph, "sparse6"), header=False))
+
+
+def encode_digraph6(graph: Digraph) -> bytes:
+    """Return ``graph`` as a digraph6 line: ``&``, n, and the rows of the adjacency matrix as bits."""
+    import numpy as np
+
+    warn_of_lost_labels(graph, "digraph6")
+    bits = np.zeros(-(-graph.n * graph.n // 6) * 6, dtype=np.int64)
+    heads = np.repeat(np.arange(graph.n), graph.in_degrees)
+    bits[graph.in_indices.astype(np.int64) * graph.n + heads] = 1
+    body = bits.reshape(-1, 6) @ np.array([32, 16, 8, 4, 2, 1]) + 63
+    return b"&" + _encode_size(graph.n) + bytes(body.astype(np.uint8)) + b"\n"
+
+
+def warn_of_lost_labels(graph: Digraph, form: str) -> None:
+    """Warn when the labels are not ``0..n-1``, the only ones that ``form`` knows."""
+    if graph.labels != tuple(range(graph.n)):
+        warn_lossy(f"{form} replaces the labels by 0..{graph.n - 1} in their canonical order")
+
+
+def _decode(data: bytes, header: bytes, mark: bytes, parse: Callable[[bytes], Any]) -> Digraph:
+    lines = data.split(b"\n")
+    number, line = next(((i, line.strip()) for i, line in enumerate(lines, 1) if line.strip()), (1, b""))
+    if any(other.strip() for other in lines[number:]):
+        raise UnreadableTopology(f"line {number + 1}: a second graph follows: keep one graph a file")
+    line = line.removeprefix(header)
+    if not line.startswith(mark) or (not mark and line[:1] in (b":", b"&")):
+        raise UnreadableTopology(f"line {number}: the graph does not start as {header.decode().strip('<>')} does")
+    for column, byte in enumerate(line[len(mark) :], 1 + len(mark)):
+        if not 63 <= byte <= 126:
+            raise UnreadableTopology(f"line {number}, column {column}: byte {byte:#04x} is not in '?' .. '~'")
+    size, _ = _decode_size(line[len(mark) :])
+    if size > NODE_LIMIT:
+        raise UnreadableTopology(f"line {number}: announces {size} nodes, and at most {NODE_LIMIT} are read")
+    return parsed_by_networkx(lambda: parse(line))
+
+
+def _decode_size(line: bytes) -> tuple[int, int]:
+    """Return n and the number of bytes that tell it: 1, 4 or 8 of six bits each, offset by 63."""
+    length = 1 if line[:1] != b"~" else 4 if line[1:2] != b"~" else 8
+    if len(line) < length:
+        raise UnreadableTopology("the graph ends before its number of nodes is told")
+    digits = line[{1: 0, 4: 1, 8: 2}[length] : length]
+    size = 0
+    for digit in digits:
+        size = size << 6 | digit - 63
+    return size, length
+
+
+def _encode_size(n: int) -> bytes:
+    if n <= 62:
+        return bytes([n + 63])
+    marks, digits = (b"~", 3) if n <= 258047 else (b"~~", 6)
+    return marks + bytes((n >> 6 * place & 63) + 63 for place in reversed(range(digits)))
+
+
+def _digraph_of(line: bytes) -> Any:
+    """Return the networkx digraph of a digraph6 line, which networkx itself does not read."""
+    import networkx as nx
+    import numpy as np
+
+    n, start = _decode_size(line[1:])
+    body = np.frombuffer(line, dtype=np.uint8)[1 + start :] - 63
+    if len(body) != -(-n * n // 6):
+        raise UnreadableTopology(f"{n} nodes need {-(-n * n // 6)} bytes of arcs, and {len(body)} are there")
+    bits = np.unpackbits(body.reshape(-1, 1), axis=1)[:, 2:].reshape(-1)
+    if bits[n * n :].any():
+        raise UnreadableTopology("the padding after the last arc is not zero")
+    arcs = np.argwhere(bits[: n * n].reshape(n, n))
+    graph: Any = nx.DiGraph()
+    graph.add_nodes_from(range(n))
+    graph.add_edges_from(arcs.tolist())
+    return graph
+
+
+def _undirected(graph: Digraph, form: str) -> Any:
+    import networkx as nx
+
+    if not graph.is_symmetric:
+        raise InvalidGraph(f"{form} holds undirected graphs only, and an arc here has no reverse: write .d6 or .json")
+    warn_of_lost_labels(graph, form)
+    plain: Any = nx.Graph()
+    plain.add_nodes_from(range(graph.n))
+    plain.add_edges_from((u, v) for u, v in graph.arcs() if u < v)
+    return plain

@@ -1,0 +1,227 @@
+"""What a graph can be asked for: small frozen properties, each with an exact test and a textual form.
+
+A property is about an unlabelled graph: relabelling the nodes never changes the answer. ``holds`` is the definition;
+the searches never say FOUND before ``holds`` has agreed for every property asked for.
+
+==================  ========================================  =================================================
+class               text                                      holds when
+==================  ========================================  =================================================
+``RRobust(r)``      ``2-robust``                              r-robust
+``RSRobust(r, s)``  ``(2,2)-robust``                          (r,s)-robust
+``Connected(k)``    ``3-connected``                           vertex connectivity at least k (digraphs: strong)
+``HasTrap(f)``      ``trap(1)``                               a trap for f exists
+``InDegree(...)``   ``min-degree>=3``, ``max-degree<=4``      every in-degree lies in the range
+``Edges(...)``      ``edges<=12``, ``edges>=8``, ``edges=9``  the number of edges (digraphs: arcs) does
+==================  ========================================  =================================================
+
+``regular(k)``, text ``4-regular``, is ``InDegree(k, k)``.
+"""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+from robustness.checking import check_rs_robustness
+from robustness.constructions.traps import find_trap
+from robustness.digraph import Digraph
+from robustness.errors import InvalidParameter, Undecided
+from robustness.graph_search.connectivity import smallest_separation
+from robustness.results import Verdict
+
+__all__ = [
+    "Connected",
+    "Edges",
+    "HasTrap",
+    "InDegree",
+    "Property",
+    "RRobust",
+    "RSRobust",
+    "parse_property",
+    "regular",
+]
+
+
+@runtime_checkable
+class Property(Protocol):
+    """Something that a graph has or has not, whatever its labels."""
+
+    def holds(self, graph: Digraph, deadline: float | None = None) -> bool:
+        """Return whether ``graph`` has it; raise :class:`Undecided` past ``deadline`` (``time.monotonic()``)."""
+
+
+@dataclass(frozen=True, slots=True)
+class RSRobust:
+    """(r,s)-robust. A graph with fewer than s nodes is not: s lies in 1..n."""
+
+    r: int
+    s: int = 1
+
+    def __post_init__(self) -> None:
+        _require_at_least("r", self.r, 0)
+        _require_at_least("s", self.s, 1)
+
+    def holds(self, graph: Digraph, deadline: float | None = None) -> bool:
+        """Decide it by the exact algorithms."""
+        if self.s > max(graph.n, 1):
+            return False
+        result = check_rs_robustness(graph, self.r, self.s, time_limit=_seconds_left(deadline))
+        if result.verdict is Verdict.UNDECIDED:
+            raise Undecided(f"whether a graph is {self} was not decided: raise the time limit")
+        return result.verdict is Verdict.ROBUST
+
+    def __str__(self) -> str:
+        return f"{self.r}-robust" if self.s == 1 else f"({self.r},{self.s})-robust"
+
+
+def RRobust(r: int) -> RSRobust:
+    """Return the property r-robust, which is (r,1)-robust.
+
+    >>> str(RRobust(2))
+    '2-robust'
+    """
+    return RSRobust(r, 1)
+
+
+@dataclass(frozen=True, slots=True)
+class HasTrap:
+    """A trap for f exists; see :mod:`robustness.constructions.traps`."""
+
+    f: int
+
+    def __post_init__(self) -> None:
+        _require_at_least("f", self.f, 0)
+
+    def holds(self, graph: Digraph, deadline: float | None = None) -> bool:
+        """Decide it by removing every set of at most f nodes."""
+        return find_trap(graph, self.f, time_limit=_seconds_left(deadline)) is not None
+
+    def __str__(self) -> str:
+        return f"trap({self.f})"
+
+
+@dataclass(frozen=True, slots=True)
+class Connected:
+    """Vertex connectivity at least k: more than k nodes, and connected (digraphs: strongly) without any k - 1 of them.
+
+    K_n is (n-1)-connected and no more. Every graph is 0-connected.
+    """
+
+    k: int
+
+    def __post_init__(self) -> None:
+        _require_at_least("k", self.k, 0)
+
+    def holds(self, graph: Digraph, deadline: float | None = None) -> bool:
+        """Decide it by removing every set of fewer than k nodes."""
+        return self.k == 0 or (graph.n > self.k and smallest_separation(graph, self.k) is None)
+
+    def __str__(self) -> str:
+        return f"{self.k}-connected"
+
+
+@dataclass(frozen=True, slots=True)
+class InDegree:
+    """Every in-degree is at least ``least`` and at most ``most`` (None: no limit)."""
+
+    least: int = 0
+    most: int | None = None
+
+    def __post_init__(self) -> None:
+        _require_at_least("least", self.least, 0)
+        if self.most is not None:
+            _require_at_least("most", self.most, self.least)
+
+    def holds(self, graph: Digraph, deadline: float | None = None) -> bool:
+        """Look at every in-degree."""
+        return all(self.least <= d and (self.most is None or d <= self.most) for d in graph.in_degrees.tolist())
+
+    def __str__(self) -> str:
+        if self.most == self.least:
+            return f"{self.least}-regular"
+        low, high = f"min-degree>={self.least}", f"max-degree<={self.most}"
+        return low if self.most is None else high if self.least == 0 else f"{low} and {high}"
+
+
+def regular(k: int) -> InDegree:
+    """Return the property that every in-degree is k.
+
+    >>> str(regular(4))
+    '4-regular'
+    """
+    return InDegree(k, k)
+
+
+@dataclass(frozen=True, slots=True)
+class Edges:
+    """At least ``least`` and at most ``most`` edges (None: no limit); arcs, for a directed graph."""
+
+    least: int = 0
+    most: int | None = None
+
+    def __post_init__(self) -> None:
+        _require_at_least("least", self.least, 0)
+        if self.most is not None:
+            _require_at_least("most", self.most, self.least)
+
+    def holds(self, graph: Digraph, deadline: float | None = None) -> bool:
+        """Count them."""
+        count = graph.arc_count if graph.directed else graph.arc_count // 2
+        return self.least <= count and (self.most is None or count <= self.most)
+
+    def __str__(self) -> str:
+        if self.most == self.least:
+            return f"edges={self.least}"
+        low, high = f"edges>={self.least}", f"edges<={self.most}"
+        return low if self.most is None else high if self.least == 0 else f"{low} and {high}"
+
+
+def parse_property(text: str) -> Property:
+    """Return the property that ``text`` spells; see the table of this module.
+
+    Raises
+    ------
+    InvalidParameter
+        When it spells none.
+
+    >>> parse_property("(2,2)-robust")
+    RSRobust(r=2, s=2)
+    """
+    compact = text.replace(" ", "").lower()
+    patterns: dict[str, Callable[..., Property]] = {
+        r"(\d+)-robust": lambda r: RSRobust(r),
+        r"\((\d+),(\d+)\)-robust": RSRobust,
+        r"(\d+)-connected": Connected,
+        r"(\d+)-regular": regular,
+        r"trap\((\d+)\)": HasTrap,
+        r"min-degree>=(\d+)": InDegree,
+        r"max-degree<=(\d+)": lambda most: InDegree(0, most),
+        r"edges>=(\d+)": Edges,
+        r"edges<=(\d+)": lambda most: Edges(0, most),
+        r"edges=(\d+)": lambda count: Edges(count, count),
+    }
+    for pattern, make in patterns.items():
+        if (match := re.fullmatch(pattern, compact)) is not None:
+            return make(*map(int, match.groups()))
+    raise InvalidParameter(
+        "a property is written 2-robust, (2,2)-robust, 3-connected, 4-regular, trap(1), min-degree>=3, "
+        f"max-degree<=4, edges<=12, edges>=8 or edges=9, not {text!r}"
+    )
+
+
+def _require_at_least(name: str, value: int, least: int) -> None:
+    if type(value) is not int or value < least:
+        raise InvalidParameter(f"{name} is an integer of at least {least}, not {value!r}")
+
+
+def _seconds_left(deadline: float | None) -> float | None:
+    """Return a positive time limit, however little is left, or raise when nothing is."""
+    if deadline is None:
+        return None
+    left = deadline - time.monotonic()
+    if left <= 0:
+        raise Undecided("the time limit was reached")
+    return left

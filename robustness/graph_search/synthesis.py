@@ -1,0 +1,235 @@
+"""Counterexample-guided search: propose a graph that meets the constraints so far, see what breaks it, learn from it.
+
+A proposal that breaks a *for all* demand comes with a violating pair, a trap or a separator. The demand for that pair
+speaks about sets of nodes and not about the proposal, so it holds for every graph that fits, and is added to the
+model. When the model has no solution left, no graph fits; when nothing breaks the proposal, it fits. The loop is
+finite, as there are finitely many pairs. The scheme is Solar-Lezama's (counterexample-guided inductive synthesis);
+CP-SAT proposes.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Sequence
+from concurrent.futures import Future, wait
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robustness.algorithms import Pair
+from robustness.checking import check_rs_robustness
+from robustness.constructions.traps import find_trap
+from robustness.digraph import Digraph
+from robustness.errors import InternalError, Undecided
+from robustness.graph_search.connectivity import smallest_separation
+from robustness.graph_search.model import GraphModel
+from robustness.graph_search.properties import Connected, HasTrap, Property, RSRobust
+from robustness.results import Verdict
+
+if TYPE_CHECKING:
+    from ortools.sat.python import cp_model
+
+__all__ = ["Synthesis", "small_violations", "synthesise"]
+
+#: Up to this many nodes a proposal shows many violating pairs at once, not only the first that is found.
+ALL_PAIRS_NODES = 10
+PAIRS_A_ROUND = 100
+
+
+@dataclass(slots=True)
+class Synthesis:
+    """What the loop came to: a graph that fits, and what is proven about the number of edges.
+
+    ``is_complete`` says that the question was settled: without ``graph`` none exists, and with it, where edges were
+    minimised, none has fewer.
+    """
+
+    graph: Digraph | None = None
+    edges_at_least: int = 0
+    is_complete: bool = False
+    stats: dict[str, Any] = field(default_factory=lambda: {"proposals": 0, "constraints": 0})
+
+
+def synthesise(
+    n: int,
+    satisfies: Sequence[Property],
+    violates: Sequence[Property],
+    *,
+    directed: bool,
+    minimise: bool = False,
+    deadline: float | None = None,
+    jobs: int = 1,
+    seed: int = 0,
+    symmetry_breaking: bool = True,
+) -> Synthesis:
+    """Search for a graph on n >= 2 nodes; with ``minimise``, for one with the fewest edges.
+
+    First any graph is looked for, then one with fewer edges, until none is left: so a limit leaves a graph that fits,
+    and ``edges_at_least`` below it.
+    """
+    model = GraphModel(n, directed=directed, symmetry_breaking=symmetry_breaking)
+    model.demand(satisfies, violates)
+    found = Synthesis()
+    try:
+        found.graph = _propose_until_it_fits(model, satisfies, violates, found, deadline, jobs, seed)
+        if found.graph is not None and minimise:
+            model.model.minimize(model.edge_count())
+            # The optimum of every relaxation is a lower bound, so the first proposal that fits is a graph with
+            # fewest edges.
+            found.graph = _propose_until_it_fits(model, satisfies, violates, found, deadline, jobs, seed)
+            if found.graph is None:
+                raise InternalError("a graph that fits was lost while its edges were minimised: please report")
+        found.is_complete = True
+    except Undecided as limit:
+        found.stats["reason"] = str(limit)
+    return found
+
+
+def _propose_until_it_fits(
+    model: GraphModel,
+    satisfies: Sequence[Property],
+    violates: Sequence[Property],
+    found: Synthesis,
+    deadline: float | None,
+    jobs: int,
+    seed: int,
+) -> Digraph | None:
+    """Return a graph that fits (with an objective: an optimal one), or None when there is none."""
+    from ortools.sat.python import cp_model
+
+    while True:
+        solver = cp_model.CpSolver()
+        solver.parameters.num_workers = jobs
+        solver.parameters.random_seed = seed
+        if deadline is not None:
+            solver.parameters.max_time_in_seconds = max(deadline - time.monotonic(), 1e-3)
+        status = _solve(solver, model.model)
+        if status == cp_model.INFEASIBLE:
+            return None
+        if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+            if status == cp_model.MODEL_INVALID:
+                raise InternalError("CP-SAT refused the model of a graph search: please report")
+            raise Undecided("the time limit was reached")
+        if model.model.has_objective():
+            found.edges_at_least = max(found.edges_at_least, round(solver.best_objective_bound))
+        proposal = model.candidate(solver)
+        found.stats["proposals"] += 1
+        learnt = _learn(model, proposal, satisfies, violates, deadline)
+        found.stats["constraints"] += learnt
+        if not learnt:
+            if model.model.has_objective() and status != cp_model.OPTIMAL:
+                found.graph = proposal
+                raise Undecided("the time limit was reached")
+            return proposal
+
+
+def _solve(solver: cp_model.CpSolver, model: cp_model.CpModel) -> cp_model.CpSolverStatus:
+    """Run the solver in a thread of its own, so that Ctrl-C reaches Python at once and then stops the solver."""
+    solver.parameters.catch_sigint_signal = False
+    outcome: Future[cp_model.CpSolverStatus] = Future()
+
+    def work() -> None:
+        try:
+            outcome.set_result(solver.solve(model))
+        except Exception as problem:  # noqa: BLE001  # the waiting thread raises it
+            outcome.set_exception(problem)
+
+    worker = threading.Thread(target=work, name="robustness-graph-search", daemon=True)
+    worker.start()
+    try:
+        while not wait([outcome], timeout=0.1).done:
+            pass
+    except BaseException:
+        solver.stop_search()
+        worker.join()
+        raise
+    return outcome.result()
+
+
+def _learn(
+    model: GraphModel,
+    proposal: Digraph,
+    satisfies: Sequence[Property],
+    violates: Sequence[Property],
+    deadline: float | None,
+) -> int:
+    """Add what the proposal shows to be missing, and return how many constraints that are."""
+    learnt = 0
+    for wanted in satisfies:
+        match wanted:
+            case RSRobust(r, s):
+                learnt += _learn_pair(model, proposal, r, s, deadline)
+            case Connected(k):
+                learnt += _learn_separator(model, proposal, k)
+    for unwanted in violates:
+        if isinstance(unwanted, HasTrap):
+            learnt += _learn_trap(model, proposal, unwanted.f, deadline)
+    return learnt
+
+
+def _learn_pair(model: GraphModel, proposal: Digraph, r: int, s: int, deadline: float | None) -> int:
+    """Forbid a violating pair of the proposal, if it has one; on few nodes, many at once."""
+    if r == 0:
+        return 0
+    pairs: Sequence[Pair]
+    if proposal.n <= ALL_PAIRS_NODES:
+        pairs = small_violations(proposal, r, s, PAIRS_A_ROUND)
+    else:
+        result = check_rs_robustness(proposal, r, s, time_limit=_seconds_left(deadline))
+        if result.verdict is Verdict.UNDECIDED:
+            raise Undecided("a proposal could not be checked within the time limit")
+        witness = result.witness
+        pairs = [] if witness is None else [Pair(proposal.ids(witness.S1), proposal.ids(witness.S2))]
+    for pair in pairs:
+        model.forbid_pair(pair, r, s)
+    return len(pairs)
+
+
+def small_violations(graph: Digraph, r: int, s: int, most: int) -> list[Pair]:
+    """Return up to ``most`` violating pairs of (r,s)-robustness, of the smallest sets: their constraints say most.
+
+    Quadratic in ``2^n``; empty exactly when the graph is (r,s)-robust.
+    """
+    n = graph.n
+    subsets = np.arange(1 << n)
+    reached = np.zeros(1 << n, dtype=np.int64)
+    for i, mask in enumerate(graph.in_masks):
+        inside = subsets >> i & 1 == 1
+        reached[inside] += np.bitwise_count(mask & ~subsets[inside]) >= r
+    sizes = np.bitwise_count(subsets)
+    bad = subsets[(reached < sizes) & (reached < s)]
+    first, second = (side.ravel() for side in np.meshgrid(bad, bad))
+    is_pair = (first < second) & (first & second == 0) & (reached[first] + reached[second] < s)
+    first, second = first[is_pair], second[is_pair]
+    order = np.argsort(sizes[first] + sizes[second], kind="stable")[:most]
+    return [
+        Pair(_members(one), _members(two))
+        for one, two in zip(first[order].tolist(), second[order].tolist(), strict=True)
+    ]
+
+
+def _members(mask: int) -> frozenset[int]:
+    return frozenset(i for i in range(mask.bit_length()) if mask >> i & 1)
+
+
+def _learn_trap(model: GraphModel, proposal: Digraph, f: int, deadline: float | None) -> int:
+    trap = find_trap(proposal, f, time_limit=_seconds_left(deadline))
+    if trap is None:
+        return 0
+    model.forbid_trap(Pair(proposal.ids(trap.S1), proposal.ids(trap.S2)), proposal.ids(trap.M), f)
+    return 1
+
+
+def _learn_separator(model: GraphModel, proposal: Digraph, k: int) -> int:
+    """Forbid a smallest separator of fewer than k nodes, if the proposal has one."""
+    found = smallest_separation(proposal, k)
+    if found is None:
+        return 0
+    model.forbid_separator(found.sources, found.sinks)
+    return 1
+
+
+def _seconds_left(deadline: float | None) -> float | None:
+    return None if deadline is None else max(deadline - time.monotonic(), 1e-6)

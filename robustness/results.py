@@ -1,0 +1,151 @@
+"""What the questions of this package are answered with: frozen, three-valued, with evidence."""
+
+from __future__ import annotations
+
+import enum
+import html
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from certificates.graph import Label
+from robustness.errors import Undecided
+
+__all__ = ["Bound", "Bounds", "RobustnessResult", "Verdict", "Witness"]
+
+
+class Verdict(enum.Enum):
+    """The answer to a question about robustness."""
+
+    ROBUST = "robust"
+    NOT_ROBUST = "not-robust"
+    UNDECIDED = "undecided"
+    #: r* is known exactly; ``s_bounds`` tells how exactly s_max(r*) is.
+    DETERMINED = "determined"
+
+
+class Witness(NamedTuple):
+    """A violating pair: nonempty disjoint node sets for which the definition fails."""
+
+    S1: frozenset[Label]
+    S2: frozenset[Label]
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """One bound on r* (or on s_max(r*)), with the reason it holds and, for an upper bound, its pair if any."""
+
+    value: int
+    reason: str
+    witness: Witness | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """What is proven: ``lower.value <= r* <= upper.value``."""
+
+    lower: Bound
+    upper: Bound
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the bounds as JSON-ready values."""
+        return {
+            "lower": self.lower.value,
+            "upper": self.upper.value,
+            "lower_reason": self.lower.reason,
+            "upper_reason": self.upper.reason,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class RobustnessResult:
+    """The answer to ``check_rs_robustness`` or ``determine_robustness``.
+
+    Attributes
+    ----------
+    verdict : Verdict
+        ``ROBUST``, ``NOT_ROBUST`` or ``UNDECIDED`` for a decision; ``DETERMINED`` or ``UNDECIDED`` for
+        ``determine_robustness``. UNDECIDED claims nothing beyond ``bounds``.
+    r, s : int
+        The question's values; for ``determine_robustness`` the greatest r and then the greatest s that are proven.
+    witness : Witness or None
+        For NOT_ROBUST the violating pair, already re-checked against the definition. None on fewer than two
+        nodes, where no pair exists and a convention decides. For DETERMINED: the pair that refutes (r + 1, 1).
+    certificate : bytes or None
+        The certificate, when one was asked for.
+    bounds : Bounds or None
+        What is proven about r*.
+    s_bounds : Bounds or None
+        What is proven about s_max(r), for ``determine_robustness``.
+    algorithm : str
+        The name in ``ALGORITHMS`` that decided, or the bound or rule that made a search unnecessary.
+    stats : mapping
+        Counters of the search: nodes, leaves, solver status, the reason of an UNDECIDED.
+    seconds : float
+        Wall-clock time.
+    """
+
+    verdict: Verdict
+    r: int
+    s: int
+    witness: Witness | None = None
+    certificate: bytes | None = field(default=None, repr=False)
+    bounds: Bounds | None = None
+    s_bounds: Bounds | None = None
+    algorithm: str = ""
+    stats: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}), compare=False, hash=False)
+    seconds: float = field(default=0.0, compare=False)
+
+    def __bool__(self) -> bool:
+        raise TypeError(
+            "a RobustnessResult has three values, so it has no truth value: compare .verdict, or call is_rs_robust"
+        )
+
+    @property
+    def s_is_exact(self) -> bool:
+        """Whether ``s`` is the greatest s for ``r``, after ``determine_robustness``."""
+        if self.verdict is not Verdict.DETERMINED:
+            return False
+        return self.s_bounds is None or self.s_bounds.lower.value == self.s_bounds.upper.value
+
+    def decided(self) -> bool:
+        """Return True for ROBUST and False for NOT_ROBUST; raise :class:`Undecided` otherwise."""
+        if self.verdict is Verdict.ROBUST:
+            return True
+        if self.verdict is Verdict.NOT_ROBUST:
+            return False
+        raise Undecided(
+            f"({self.r},{self.s})-robustness was not decided ({self.stats.get('reason', 'a limit was reached')}): "
+            "raise the time limit or choose another algorithm"
+        )
+
+    def summary(self) -> str:
+        """Return the verdict in one line of plain words."""
+        match self.verdict:
+            case Verdict.ROBUST:
+                return f"({self.r},{self.s})-robust"
+            case Verdict.NOT_ROBUST:
+                return f"not ({self.r},{self.s})-robust"
+            case Verdict.DETERMINED:
+                if self.s_bounds is None or self.s_is_exact:
+                    return f"r* = {self.r}, s_max({self.r}) = {self.s}"
+                return f"r* = {self.r}, {self.s} <= s_max({self.r}) <= {self.s_bounds.upper.value}"
+            case Verdict.UNDECIDED:
+                known = f", {self.bounds.lower.value} <= r* <= {self.bounds.upper.value}" if self.bounds else ""
+                return f"undecided{known}"
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
+        """Render in notebooks: a small table of what is known."""
+        rows = [("verdict", self.summary()), ("algorithm", self.algorithm), ("seconds", f"{self.seconds:.3f}")]
+        if self.witness is not None:
+            rows += [("S1", _set_text(self.witness.S1)), ("S2", _set_text(self.witness.S2))]
+        if self.bounds is not None:
+            rows += [("r* at least", f"{self.bounds.lower.value} ({self.bounds.lower.reason})")]
+            rows += [("r* at most", f"{self.bounds.upper.value} ({self.bounds.upper.reason})")]
+        body = "".join(f"<tr><th>{html.escape(k)}</th><td>{html.escape(v)}</td></tr>" for k, v in rows)
+        return {"text/plain": repr(self), "text/html": f"<table>{body}</table>"}
+
+
+def _set_text(labels: frozenset[Label]) -> str:
+    return "{" + ", ".join(sorted(map(repr, labels))) + "}"

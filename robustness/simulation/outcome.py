@@ -1,0 +1,175 @@
+"""What a run showed: agreement, split, or neither; and whether what the theory promises was kept."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from certificates.graph import Label
+from robustness.simulation.dynamics import Floats
+
+__all__ = ["Outcome", "RunVerdict", "Trajectory", "convergence_rate", "groups_of", "settled_since", "verdict_of"]
+
+
+class RunVerdict(enum.Enum):
+    """What a run showed by its horizon."""
+
+    #: All normal vehicles stayed within the tolerance during the last ``dwell`` states.
+    AGREEMENT = "agreement"
+    #: Normal vehicles stayed apart by a gap that did not change by one bit: see :func:`verdict_of`.
+    SPLIT = "split"
+    #: Neither by the horizon.
+    UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Trajectory:
+    """The states of one run.
+
+    Attributes
+    ----------
+    p, q : arrays, shape ``(K + 1, n)``
+        Transformed positions and velocities, in id order.
+    sent : array, shape ``(K + 1, n)``
+        What each node claimed to all its neighbours.
+    """
+
+    p: Floats
+    q: Floats
+    sent: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """One run's verdict and its numbers.
+
+    Attributes
+    ----------
+    verdict : RunVerdict
+    exact : bool
+        True for a split that evidence predicted and every step confirmed bit for bit: it lasts for ever.
+    spread : float
+        ``max - min`` of ``p - d`` over the normal vehicles at the horizon.
+    initial_spread : float
+    speed : float
+        The greatest ``|q|`` of a normal vehicle at the horizon.
+    since : int or None
+        The first step from which the spread stayed within the tolerance.
+    rate : float or None
+        The fitted factor by which the spread shrinks per step; None when it does not shrink to a fit.
+    safe : bool or None
+        Whether no normal vehicle ever left the range that the theory promises; None when it promises none.
+    promise : str or None
+        Why the theory promises nothing about this run, or None when its gains lie inside the theory.
+    groups : tuple
+        Normal vehicles in groups of equal ``p - d`` (to the tolerance) at the horizon, from the lowest to the highest:
+        pairs of the mean value and the labels.
+    trajectory : Trajectory or None
+        When recorded.
+    """
+
+    verdict: RunVerdict
+    exact: bool
+    spread: float
+    initial_spread: float
+    speed: float
+    since: int | None
+    rate: float | None
+    safe: bool | None
+    promise: str | None
+    groups: tuple[tuple[float, tuple[Label, ...]], ...]
+    trajectory: Trajectory | None = field(default=None, compare=False, repr=False)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the outcome as JSON-ready values (without the trajectory)."""
+        return {
+            "outcome": self.verdict.value,
+            "exact": self.exact,
+            "spread": self.spread,
+            "initial_spread": self.initial_spread,
+            "speed": self.speed,
+            "agreement_since": self.since,
+            "rate": self.rate,
+            "safe": self.safe,
+            "promise": self.promise,
+            "groups": [{"value": value, "nodes": list(labels)} for value, labels in self.groups],
+        }
+
+
+def verdict_of(
+    spread: Floats, speed: Floats, limit: float, dwell: int, *, watched: bool, unchanged: bool
+) -> tuple[RunVerdict, bool]:
+    """Return the verdict of one run, and whether it is an exact split.
+
+    Parameters
+    ----------
+    spread, speed : arrays, shape ``(K + 1,)``
+        Of the normal vehicles, at every step.
+    limit : float
+        The tolerance in the units of the spread.
+    dwell : int
+        How many of the last states count.
+    watched : bool
+        Whether two groups were watched; then a split is theirs, and nothing else is called one.
+    unchanged : bool
+        Whether the watched groups kept every position and a velocity of 0 exactly, at every step, apart.
+
+    Notes
+    -----
+    Without watched groups a split is a gap above the tolerance that is bit for bit the same in each of the last
+    ``dwell`` states. That is an observation at the horizon; only the watched kind is proven to last.
+    """
+    late_spread, late_speed = spread[-dwell:], speed[-dwell:]
+    if watched and unchanged:
+        return RunVerdict.SPLIT, True
+    if len(late_spread) < dwell:
+        return RunVerdict.UNDECIDED, False
+    if late_spread.max() <= limit and late_speed.max() <= limit:
+        return RunVerdict.AGREEMENT, False
+    if not watched and late_spread.min() > limit and (late_spread == late_spread[0]).all():
+        return RunVerdict.SPLIT, False
+    return RunVerdict.UNDECIDED, False
+
+
+def settled_since(spread: Floats, limit: float) -> int | None:
+    """Return the first step from which the spread stays within the limit, or None."""
+    outside = np.flatnonzero(~(spread <= limit))
+    if not len(outside):
+        return 0
+    return int(outside[-1]) + 1 if outside[-1] + 1 < len(spread) else None
+
+
+def convergence_rate(spread: Floats) -> float | None:
+    """Return the factor per step of an exponential decay fitted to the spread, by least squares on its logarithm.
+
+    Only the states before the spread first falls below 1e-10 of its start are used, where rounding does not matter.
+    None when fewer than 3 are left or the fit does not shrink.
+
+    >>> round(convergence_rate(0.5 ** np.arange(20.0)), 6)
+    0.5
+    """
+    if not spread[0] > 0:
+        return None
+    low = np.flatnonzero(spread <= 1e-10 * spread[0])
+    used = spread[: low[0]] if len(low) else spread
+    if len(used) < 3:
+        return None
+    slope = float(np.polyfit(np.arange(len(used)), np.log(used), 1)[0])
+    return float(np.exp(slope)) if slope < 0 else None
+
+
+def groups_of(
+    aligned: Floats, normal: npt.NDArray[np.bool_], labels: tuple[Label, ...], limit: float
+) -> tuple[tuple[float, tuple[Label, ...]], ...]:
+    """Return the normal vehicles grouped wherever two neighbours on the line are farther apart than the limit."""
+    order = [i for i in np.argsort(aligned, kind="stable").tolist() if normal[i]]
+    found: list[list[int]] = []
+    for i in order:
+        if not found or not aligned[i] - aligned[found[-1][-1]] <= limit:
+            found.append([])
+        found[-1].append(i)
+    return tuple((float(np.mean(aligned[g])), tuple(labels[i] for i in sorted(g))) for g in found)

@@ -1,0 +1,129 @@
+"""THE front: ``tolerance(G)``, what a network survives under each threat model."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, overload
+
+from robustness.algorithms import Limits, Progress
+from robustness.checking import limits_of
+from robustness.digraph import GraphLike, as_digraph
+from robustness.errors import InvalidParameter
+from robustness.threat_models.deciding import Decisions
+from robustness.threat_models.judging import judge
+from robustness.threat_models.models import THREAT_MODELS, threat_model_named
+from robustness.threat_models.over_time import MODELS_OVER_TIME, JointDecisions, over_time
+from robustness.threat_models.results import ToleranceResult, ToleranceTable
+from robustness.time_varying import TimeVaryingGraph
+
+__all__ = ["tolerance"]
+
+
+@overload
+def tolerance(
+    G: GraphLike,
+    model: str,
+    *,
+    tau: int | None = None,
+    time_limit: float | None = None,
+    jobs: int = 1,
+    seed: int = 0,
+    progress: Callable[[Progress], None] | None = None,
+) -> ToleranceResult: ...
+
+
+@overload
+def tolerance(
+    G: GraphLike,
+    model: None = None,
+    *,
+    tau: int | None = None,
+    time_limit: float | None = None,
+    jobs: int = 1,
+    seed: int = 0,
+    progress: Callable[[Progress], None] | None = None,
+) -> ToleranceTable: ...
+
+
+def tolerance(
+    G: GraphLike,
+    model: str | None = None,
+    *,
+    tau: int | None = None,
+    time_limit: float | None = None,
+    jobs: int = 1,
+    seed: int = 0,
+    progress: Callable[[Progress], None] | None = None,
+) -> ToleranceResult | ToleranceTable:
+    """Return the largest f that a threat model promises to survive, and the smallest f with an attack.
+
+    Parameters
+    ----------
+    G : networkx graph, Digraph or TimeVaryingGraph
+        An arc ``(u, v)`` means v hears u. Never changed. Of a time-varying network only the delayed models are known;
+        see :mod:`robustness.threat_models.over_time`.
+    model : str, optional
+        A name in ``THREAT_MODELS``: ``"malicious"``, ``"malicious-local"``, ``"byzantine"``, ``"delayed"`` or
+        ``"delayed-local"``. Without one: all of them, as a table.
+    tau : int, optional
+        For a time-varying network, and only there: the bound on delays and on the age of values, at least 1.
+    time_limit : float, optional
+        Wall-clock seconds in all; what is not decided by then is UNDECIDED and claimed by nobody.
+    jobs, seed, progress
+        As for :func:`robustness.check_rs_robustness`.
+
+    Returns
+    -------
+    ToleranceResult
+        ``guaranteed`` (-1 when not even f = 0 is promised), ``refuted``, ``reasons``, ``standing(f)`` and ``attack``.
+    ToleranceTable
+        Without a model: the results by name.
+
+    Raises
+    ------
+    InvalidGraph, InvalidParameter
+        For input the definitions do not speak about.
+
+    Notes
+    -----
+    f = 0 is agreement without adversaries: 1-robustness, a node that reaches all others. On fewer than two nodes nobody
+    can disagree: guaranteed is 0, nothing is refuted, and every f stands as guaranteed. Every attack leaves at least
+    two normal nodes, one on either side. All graphs on two or more nodes have one for ``f = ceil(n/2)`` (one face) or
+    for ``f = ceil(n/3)`` (two faces): with so many values discarded, nobody moves.
+
+    Exponential in the worst case: it decides robustness, which is coNP-complete.
+
+    >>> import networkx as nx
+    >>> table = tolerance(nx.wheel_graph(5))
+    >>> table.guaranteed["malicious"], table["delayed"].refuted
+    (1, 1)
+    >>> table["delayed"].attack.malicious
+    frozenset({0})
+    """
+    started = time.monotonic()
+    limits = limits_of(started, time_limit, jobs, seed, progress)
+    decisions, names = _questions(G, model, tau, limits)
+    over = over_time if isinstance(decisions, JointDecisions) else threat_model_named
+    results = tuple(judge(decisions, over(name)) for name in names)
+    if isinstance(decisions, JointDecisions):
+        results = tuple(replace(result, over_time=True) for result in results)
+    return results[0] if model is not None else ToleranceTable(decisions.graph, results)
+
+
+def _questions(G: Any, model: str | None, tau: int | None, limits: Limits) -> tuple[Decisions, tuple[str, ...]]:
+    """Return what decides about G, and the threat models to decide about."""
+    if not isinstance(G, TimeVaryingGraph):
+        if tau is not None:
+            raise InvalidParameter("tau belongs to a time-varying network: leave it out, or pass a TimeVaryingGraph")
+        names = tuple(THREAT_MODELS) if model is None else (threat_model_named(model).name,)
+        return Decisions(as_digraph(G), limits.deadline, limits.jobs, limits.seed, limits.progress), names
+    if type(tau) is not int or tau < 1:
+        raise InvalidParameter(f"a time-varying network needs tau, an integer of at least 1, not {tau!r}")
+    names = MODELS_OVER_TIME if model is None else (over_time(model).name,)
+    union = G.union(0, len(G))
+    decisions = JointDecisions(
+        union, limits.deadline, limits.jobs, limits.seed, limits.progress, sequence=G, tau=tau
+    )
+    return decisions, names

@@ -1,0 +1,153 @@
+"""Certificates of tolerance: what is guaranteed and what is refuted, for anybody to check without this package.
+
+==========================  ===================================================================  =====================
+what                        the certificate proves                                               verified by
+==========================  ===================================================================  =====================
+guaranteed, malicious       (f+1,f+1)-robust                                                     ``verify``
+guaranteed, byzantine       no trap for f: (2f+1)-robust, or (f+1)-robust without any f nodes    ``verify_tolerance``
+guaranteed, all others      (2f+1)-robust                                                        ``verify``
+refuted, malicious          not (f+1,f+1)-robust                                                 ``verify``
+refuted, all others         the sets M, S1, S2 of the attack                                     ``verify_tolerance``
+==========================  ===================================================================  =====================
+
+The kernel proves statements about graphs. That they promise or forbid agreement is what the theorems in the result's
+reasons say.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import combinations
+from math import comb
+
+from certificates import verify, verify_tolerance
+from certificates.tolerance import FORMAT
+from robustness.algorithms import Pair
+from robustness.certification import certify, encode
+from robustness.constructions.traps import without
+from robustness.digraph import Digraph
+from robustness.errors import InternalError
+from robustness.results import Verdict
+from robustness.threat_models.models import NO_TRAP, RS_ROBUST
+from robustness.threat_models.results import AttackSets, ToleranceResult
+
+__all__ = ["ToleranceCertificates", "certify_tolerance"]
+
+#: Beyond this many sets M a certificate of "no trap" is not worth its size.
+_MOST_REMOVALS = 5_000
+
+
+@dataclass(frozen=True, slots=True)
+class ToleranceCertificates:
+    """The certificates of one result; each has been verified by the kernel.
+
+    ``None`` for what is not claimed, or where a limit stopped the work, or (byzantine) where there are too many sets M.
+    For a time-varying network ``guaranteed`` is None: joint robustness has certificates of its own, see
+    :mod:`robustness.time_varying`; ``refuted`` is about the union of the steps.
+    """
+
+    guaranteed: bytes | None
+    refuted: bytes | None
+
+
+def certify_tolerance(
+    result: ToleranceResult, *, time_limit: float | None = None, jobs: int = 1, seed: int = 0
+) -> ToleranceCertificates:
+    """Return certificates of ``result.guaranteed`` and ``result.refuted``.
+
+    Parameters
+    ----------
+    result : ToleranceResult
+    time_limit : float, optional
+        Wall-clock seconds; refutations are written again, with their transcripts.
+    jobs, seed
+        As for :func:`robustness.certify`.
+
+    >>> import networkx as nx
+    >>> from robustness.threat_models import tolerance
+    >>> found = certify_tolerance(tolerance(nx.wheel_graph(5), "delayed"))
+    >>> print(verify_tolerance(Digraph.from_networkx(nx.wheel_graph(5)).canonical_bytes(), found.refuted).verdict)
+    apart
+    """
+    work = _Work(result.graph, None if time_limit is None else time.monotonic() + time_limit, jobs, seed)
+    guaranteed = None
+    if result.graph.n >= 2 and result.guaranteed >= 0 and not result.over_time:
+        guaranteed = work.promise(result)
+    return ToleranceCertificates(guaranteed, _refutation(result))
+
+
+@dataclass(frozen=True, slots=True)
+class _Work:
+    """Certificates of one graph, all before one deadline."""
+
+    graph: Digraph
+    deadline: float | None
+    jobs: int
+    seed: int
+
+    def promise(self, result: ToleranceResult) -> bytes | None:
+        f = result.guaranteed
+        if result.threat.promise == RS_ROBUST:
+            return self.robust(self.graph, f + 1, f + 1)
+        twice = self.robust(self.graph, 2 * f + 1)
+        if result.threat.promise != NO_TRAP:
+            return twice
+        if twice is not None:
+            return _tolerance(self.graph, f, 2, "total", "together", {"kind": "robust"}, twice)
+        return self.removals(f)
+
+    def robust(self, graph: Digraph, r: int, s: int = 1) -> bytes | None:
+        """Return an ordinary certificate of (r,s)-robustness, or None when it is not robust or the time is up."""
+        left = None if self.deadline is None else self.deadline - time.monotonic()
+        if left is not None and left <= 0:
+            return None
+        found = certify(graph, r, s, time_limit=left, jobs=self.jobs, seed=self.seed)
+        return found.certificate if found.verdict is Verdict.ROBUST else None
+
+    def removals(self, f: int) -> bytes | None:
+        """Return a certificate that the graph is (f+1)-robust without any f nodes."""
+        if comb(self.graph.n, f) > _MOST_REMOVALS:
+            return None
+        parts = []
+        for removed in combinations(range(self.graph.n), f):
+            part = self.robust(without(self.graph, frozenset(removed)), f + 1)
+            if part is None:
+                return None
+            parts.append(part)
+        evidence = {"kind": "removals", "lengths": [len(part) for part in parts]}
+        return _tolerance(self.graph, f, 2, "total", "together", evidence, b"".join(parts))
+
+
+def _refutation(result: ToleranceResult) -> bytes | None:
+    graph, sets = result.graph, result.attack_sets
+    if sets is None:
+        return None
+    if result.threat.promise == RS_ROBUST:
+        pair = Pair(graph.ids(sets.S1), graph.ids(sets.S2))
+        evidence = {"kind": "violation", "S1": sorted(pair.first), "S2": sorted(pair.second)}
+        certificate = encode(graph, sets.f + 1, sets.f + 1, Verdict.NOT_ROBUST, (evidence, b""))
+        verify(graph.canonical_bytes(), certificate)
+        return certificate
+    return _apart(graph, sets)
+
+
+def _apart(graph: Digraph, sets: AttackSets) -> bytes:
+    named = {name: sorted(graph.ids(labels)) for name, labels in (("M", sets.M), ("S1", sets.S1), ("S2", sets.S2))}
+    bound = "local" if sets.local else "total"
+    return _tolerance(graph, sets.f, sets.faces, bound, "apart", {"kind": "sets", **named}, b"")
+
+
+def _tolerance(
+    graph: Digraph, f: int, faces: int, bound: str, verdict: str, evidence: Mapping[str, object], body: bytes
+) -> bytes:
+    """Return a tolerance certificate after the kernel has verified it."""
+    claim = {"f": f, "faces": faces, "bound": bound, "verdict": verdict}
+    header = {"format": FORMAT, "graph": graph.sha256, "claim": claim, "evidence": evidence}
+    certificate = json.dumps(header, separators=(",", ":")).encode("ascii") + b"\n" + body
+    proved = verify_tolerance(graph.canonical_bytes(), certificate)
+    if (proved.verdict, proved.f, proved.faces, proved.bound) != (verdict, f, faces, bound):
+        raise InternalError(f"the certificate proves {proved}, which was not the claim: please report")
+    return certificate

@@ -1,0 +1,145 @@
+"""The two questions behind every threat model, asked once and remembered: robust? an attack of this kind?"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from robustness.algorithms import Limits, Progress
+from robustness.checking import check_rs_robustness
+from robustness.definitions import largest_conceivable_r, r_reachable_ids
+from robustness.digraph import Digraph
+from robustness.results import RobustnessResult, Verdict
+from robustness.trap_search.finding import decide_trap
+from robustness.trap_search.question import Question, Sets, solves
+from robustness.trap_search.shortcuts import settle_trap
+
+__all__ = ["Decisions", "Finding", "certain_attack", "highest_promise"]
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """Whether an attack of a kind exists (None: a limit), its sets, and what decided it."""
+
+    exists: bool | None
+    sets: Sets | None
+    how: str
+
+
+def certain_attack(n: int, two_faces: bool) -> int:
+    """Return an f for which every graph on n >= 2 nodes has an attack: ceil(n/2) with one face, ceil(n/3) with two."""
+    return -(-n // (3 if two_faces else 2))
+
+
+@dataclass(slots=True)
+class Decisions:
+    """What has been decided about one graph. All methods are exact or say that a limit stopped them."""
+
+    graph: Digraph
+    deadline: float | None
+    jobs: int = 1
+    seed: int = 0
+    progress: Callable[[Progress], None] | None = None
+    _robust: dict[tuple[int, int], RobustnessResult] = field(default_factory=dict)
+    _attacks: dict[Question, Finding] = field(default_factory=dict)
+
+    def limits(self, share: float = 1.0) -> Limits:
+        """Return limits that allow ``share`` of the time that is left."""
+        deadline = self.deadline
+        if deadline is not None:
+            now = time.monotonic()
+            deadline = now + max(0.0, deadline - now) * share
+        return Limits(deadline, self.jobs, self.seed, self.progress)
+
+    def robust(self, r: int, s: int = 1, share: float = 1.0) -> RobustnessResult:
+        """Return the result of :func:`check_rs_robustness`, from memory where it is known."""
+        known = self._robust.get((r, s))
+        if known is None:
+            limits = self.limits(share)
+            # The front refuses a limit that is not positive; a hundredth of a second decides the easy ones.
+            left = None if limits.deadline is None else max(0.01, limits.seconds_left())
+            known = self._robust[r, s] = check_rs_robustness(
+                self.graph, r, s, time_limit=left, jobs=self.jobs, seed=self.seed, progress=self.progress
+            )
+        return known
+
+    def attack(self, question: Question, share: float = 1.0) -> Finding:
+        """Return whether an attack of this kind exists, by what is known already or by search."""
+        known = self._attacks.get(question)
+        if known is None or known.exists is None:
+            known = self._attacks[question] = self._implied(question) or self._search(question, share)
+        return known
+
+    def quick_attack(self, question: Question) -> Finding | None:
+        """Return what lemmas alone tell about the question, or None."""
+        known = self._attacks.get(question) or self._implied(question)
+        if known is None:
+            settled = settle_trap(self.graph, question, self.limits(0.1))
+            if settled is not None:
+                known = Finding(settled[0] is not None, settled[0], settled[1])
+        if known is not None and known.exists is not None:
+            self._attacks[question] = known
+            return known
+        return None
+
+    def twice_robust(self, f: int, share: float = 1.0) -> RobustnessResult:
+        """Return whether the graph is (2f+1)-robust."""
+        return self.robust(2 * f + 1, 1, share)
+
+    def strength(self, f: int, *, holds: bool) -> str:
+        """Return in words that the network is, or is not, as robust as agreement against f needs."""
+        return f"the network is {'' if holds else 'not '}{2 * f + 1}-robust"
+
+    @property
+    def scene(self) -> str:
+        """Where traps are looked for, as the beginning of a sentence."""
+        return ""
+
+    def _implied(self, question: Question) -> Finding | None:
+        """Derive the answer from others: see the lemmas in :mod:`robustness.trap_search.question`."""
+        f, two_faces, local = question
+        for other, found in self._attacks.items():
+            if found.sets is not None and other.f <= f and other.two_faces <= two_faces and other.local <= local:
+                sets = found.sets
+                if two_faces and not other.two_faces:
+                    sets = Sets(sets.M, sets.S1 - sets.M, sets.S2 - sets.M)
+                if solves(self.graph, question, sets):
+                    return Finding(True, sets, found.how)
+            if found.exists is False and other.f >= f and other.two_faces >= two_faces and other.local >= local:
+                return Finding(False, None, found.how)
+        twice = self._robust.get((2 * f + 1, 1))
+        if twice is not None and twice.verdict is Verdict.ROBUST:
+            return Finding(False, None, f"{2 * f + 1}-robust, so there is none")
+        return None
+
+    def _search(self, question: Question, share: float) -> Finding:
+        f, two_faces, local = question
+        if f == 0 or not (two_faces or local):
+            # For f = 0 all kinds are one: nodes of S_k hear neither a malicious node nor anybody else outside S_k.
+            return self._violation(f, share)
+        limits = self.limits(share)
+        exists, sets, name, stats = decide_trap(self.graph, question, limits)
+        how = str(stats.get("rule", "")) or f"complete search ({stats.get('nodes', 0)} nodes)"
+        if exists is None:
+            how = str(stats.get("reason", "a limit was reached"))
+        return Finding(exists, sets, how if name == "lemma" or exists is not True else "found by search")
+
+    def _violation(self, f: int, share: float) -> Finding:
+        """One face in total is (f+1,f+1)-robustness: the pair's reachable nodes are malicious."""
+        graph = self.graph
+        if graph.n < 2:
+            return Finding(False, None, "fewer than two nodes: nobody to hold apart")
+        result = self.robust(f + 1, min(f + 1, graph.n), share)
+        if result.verdict is Verdict.UNDECIDED:
+            return Finding(None, None, str(result.stats.get("reason", "a limit was reached")))
+        if result.witness is None:
+            return Finding(False, None, f"({f + 1},{f + 1})-robust, decided by {result.algorithm}")
+        S1, S2 = graph.ids(result.witness.S1), graph.ids(result.witness.S2)
+        bad = r_reachable_ids(graph, S1, f + 1) | r_reachable_ids(graph, S2, f + 1)
+        return Finding(True, Sets(bad, S1, S2), f"violating pair of ({f + 1},{f + 1})-robustness ({result.algorithm})")
+
+
+def highest_promise(n: int) -> int:
+    """Return the largest f for which ``2f + 1 <= ceil(n/2)``: no graph on n nodes is more robust."""
+    return (largest_conceivable_r(n) - 1) // 2

@@ -1,0 +1,254 @@
+"""What a question about tolerance is answered with: frozen, and never more than is proven."""
+
+from __future__ import annotations
+
+import enum
+import html
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from certificates.graph import Label
+from robustness.digraph import Digraph
+from robustness.errors import InvalidParameter
+from robustness.threat_models.models import ThreatModel
+
+if TYPE_CHECKING:
+    from robustness.simulation.attacks import Attack
+
+__all__ = ["AttackSets", "Reason", "Standing", "ToleranceResult", "ToleranceTable"]
+
+
+class Standing(enum.Enum):
+    """What is known about one f under one threat model."""
+
+    #: A theorem promises agreement.
+    GUARANTEED = "guaranteed"
+    #: A re-checked attack splits the network for ever.
+    REFUTED = "refuted"
+    #: Everything was decided: the promise does not apply, and no attack of the kind exists. Theory leaves it open.
+    OPEN = "open"
+    #: A limit stopped the search.
+    UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True, slots=True)
+class AttackSets:
+    """The sets that hold a network apart: see :mod:`robustness.trap_search.question`.
+
+    ``faces`` 1: M is a subset of S1 and S2 (a violation). ``faces`` 2: M is outside both (a trap).
+    """
+
+    f: int
+    faces: int
+    local: bool
+    M: frozenset[Label]
+    S1: frozenset[Label]
+    S2: frozenset[Label]
+
+    @property
+    def kind(self) -> str:
+        """``"violation"`` or ``"trap"``."""
+        return "violation" if self.faces == 1 else "trap"
+
+
+@dataclass(frozen=True, slots=True)
+class Reason:
+    """One sentence about f, the theorem behind it and the evidence for it.
+
+    Attributes
+    ----------
+    standing : Standing
+    f : int
+        The f (for GUARANTEED the largest, for REFUTED the smallest) that the sentence is about.
+    statement : str
+        What was decided about the graph.
+    theorem : str
+        What turns that into a sentence about agreement, or why nothing does.
+    evidence : str
+        What decided it. Certificates: :func:`robustness.threat_models.certify_tolerance`.
+    """
+
+    standing: Standing
+    f: int
+    statement: str
+    theorem: str
+    evidence: str
+
+
+@dataclass(frozen=True, slots=True)
+class ToleranceResult:
+    """What one network survives under one threat model.
+
+    Attributes
+    ----------
+    threat : ThreatModel
+    guaranteed : int
+        The largest f for which agreement is promised; -1 when nothing is, not even agreement without adversaries.
+    refuted : int or None
+        The smallest f for which an attack is known. None: no attack is known (a limit, or fewer than two nodes).
+    reasons : tuple of Reason
+    attack_sets : AttackSets or None
+        The attack on ``refuted``, re-checked against its definition.
+    no_attack : int
+        The largest f for which it is decided that no attack of the model's kind exists; -1 when for none.
+    no_promise : int or None
+        The smallest f for which it is decided that the promise does not apply.
+    over_time : bool
+        Whether the promise is about windows of a sequence; ``graph`` is then the union of its steps.
+    """
+
+    graph: Digraph = field(repr=False)
+    threat: ThreatModel
+    guaranteed: int
+    refuted: int | None
+    reasons: tuple[Reason, ...] = field(repr=False)
+    attack_sets: AttackSets | None = None
+    no_attack: int = -1
+    no_promise: int | None = None
+    over_time: bool = False
+
+    def __bool__(self) -> bool:
+        raise TypeError("a ToleranceResult has no truth value: compare .guaranteed, .refuted or .standing(f)")
+
+    @property
+    def model(self) -> str:
+        """The name of the threat model."""
+        return self.threat.name
+
+    def standing(self, f: int) -> Standing:
+        """Return what is known about f.
+
+        Raises
+        ------
+        InvalidParameter
+            For a negative f.
+        """
+        if type(f) is not int or f < 0:
+            raise InvalidParameter(f"f is an integer of at least 0, not {f!r}")
+        if self.graph.n < 2 or f <= self.guaranteed:
+            return Standing.GUARANTEED
+        if self.refuted is not None and f >= self.refuted:
+            return Standing.REFUTED
+        if self.no_promise is not None and self.no_promise <= f <= self.no_attack:
+            return Standing.OPEN
+        return Standing.UNDECIDED
+
+    @property
+    def between(self) -> tuple[int, ...]:
+        """The f that are neither guaranteed nor refuted, up to the smallest refuted one."""
+        return tuple(range(self.guaranteed + 1, self.refuted)) if self.refuted is not None else ()
+
+    @property
+    def is_decided(self) -> bool:
+        """Whether no limit is to blame for any f that is neither guaranteed nor refuted."""
+        if self.graph.n < 2:
+            return True
+        return self.refuted is not None and all(self.standing(f) is Standing.OPEN for f in self.between)
+
+    @property
+    def attack(self) -> Attack | None:
+        """The attack on ``refuted`` for the simulator; ``attack.run().exact`` is True."""
+        if self.attack_sets is None:
+            return None
+        from robustness.simulation.attacks import Attack
+
+        sets, delayed = self.attack_sets, self.threat.faults != "byzantine" and self.threat.two_faces
+        return Attack(sets.kind, self.graph, sets.f, self.threat.faults, sets.M, sets.S1, sets.S2, delayed=delayed)
+
+    def summary(self) -> str:
+        """Return the result in plain words, claiming no more than the theorems do."""
+        from robustness.threat_models.wording import summary
+
+        return summary(self)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the result as JSON-ready values."""
+        return {
+            "model": self.model,
+            "setting": self.threat.setting,
+            "guaranteed": self.guaranteed,
+            "refuted": self.refuted,
+            "open": [f for f in self.between if self.standing(f) is Standing.OPEN],
+            "undecided": [f for f in self.between if self.standing(f) is Standing.UNDECIDED],
+            "is_decided": self.is_decided,
+            "summary": self.summary(),
+            "reasons": [
+                {
+                    "standing": reason.standing.value,
+                    "f": reason.f,
+                    "statement": reason.statement,
+                    "theorem": reason.theorem,
+                    "evidence": reason.evidence,
+                }
+                for reason in self.reasons
+            ],
+            "attack": None if self.attack is None else self.attack.as_dict(),
+        }
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
+        """Render in notebooks: the summary and the reasons."""
+        rows = "".join(
+            f"<tr><th>{reason.standing.value} f = {reason.f}</th><td>{html.escape(reason.statement)}</td>"
+            f"<td>{html.escape(reason.theorem)}</td></tr>"
+            for reason in self.reasons
+        )
+        return {"text/plain": repr(self), "text/html": f"<p>{html.escape(self.summary())}</p><table>{rows}</table>"}
+
+
+@dataclass(frozen=True, slots=True)
+class ToleranceTable(Mapping[str, ToleranceResult]):
+    """The results of several threat models by name."""
+
+    graph: Digraph
+    results: tuple[ToleranceResult, ...]
+
+    def __getitem__(self, model: str) -> ToleranceResult:
+        for result in self.results:
+            if result.model == model:
+                return result
+        raise KeyError(model)
+
+    def __iter__(self) -> Iterator[str]:
+        return (result.model for result in self.results)
+
+    def __len__(self) -> int:
+        return len(self.results)
+
+    @property
+    def guaranteed(self) -> dict[str, int]:
+        """The largest f promised, by model."""
+        return {result.model: result.guaranteed for result in self.results}
+
+    @property
+    def refuted(self) -> dict[str, int | None]:
+        """The smallest f with an attack, by model."""
+        return {result.model: result.refuted for result in self.results}
+
+    @property
+    def reasons(self) -> dict[str, tuple[Reason, ...]]:
+        """The reasons, by model."""
+        return {result.model: result.reasons for result in self.results}
+
+    @property
+    def is_decided(self) -> bool:
+        """Whether no limit is to blame for anything that is not known."""
+        return all(result.is_decided for result in self.results)
+
+    def summary(self) -> str:
+        """Return the table in one paragraph of plain words."""
+        from robustness.threat_models.wording import table_summary
+
+        return table_summary(self)
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
+        """Render in notebooks: the paragraph and the table."""
+        from robustness.threat_models.wording import number
+
+        rows = "".join(
+            f"<tr><th>{result.model}</th><td>{number(result.guaranteed)}</td><td>{number(result.refuted)}</td></tr>"
+            for result in self.results
+        )
+        head = "<tr><th>model</th><th>guaranteed f</th><th>refuted f</th></tr>"
+        text = f"<p>{html.escape(self.summary())}</p><table>{head}{rows}</table>"
+        return {"text/plain": repr(self), "text/html": text}

@@ -1,0 +1,90 @@
+"""Results in plain words. No sentence here claims more than the theorem that its result carries."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from robustness.threat_models.models import THREAT_MODELS
+from robustness.threat_models.results import Standing
+
+if TYPE_CHECKING:
+    from robustness.threat_models.results import ToleranceResult, ToleranceTable
+
+__all__ = ["number", "summary", "table_summary"]
+
+_WHERE = {
+    "malicious": "in step, without delays, against liars who tell everybody the same",
+    "malicious-local": "in step, without delays, with up to f such liars around every vehicle",
+    "byzantine": "in step, without delays, against liars who tell each neighbour another story",
+    "delayed": "with delays and partly asynchronous updates",
+    "delayed-local": "with delays and up to f liars around every vehicle",
+}
+
+
+def number(f: int | None) -> str:
+    """Return an f as people write it: ``none`` for -1 and None."""
+    return "none" if f is None or f < 0 else str(f)
+
+
+def summary(result: ToleranceResult) -> str:
+    """Return one model's result in one sentence."""
+    where = _WHERE[result.model]
+    return f"{where[0].upper()}{where[1:]}: {_outcome(result)}."
+
+
+def _outcome(result: ToleranceResult) -> str:
+    """Return what is known under one model, without saying which."""
+    if result.graph.n < 2:
+        return "fewer than two vehicles cannot disagree"
+    parts = [_promised(result), _refuted(result)]
+    for standing in (Standing.OPEN, Standing.UNDECIDED):
+        which = [f for f in result.between if result.standing(f) is standing]
+        if which:
+            parts.append(_between(which, standing, result))
+    return "; ".join(part for part in parts if part)
+
+
+def table_summary(table: ToleranceTable) -> str:
+    """Return the whole table as one paragraph; models with one and the same outcome share a sentence."""
+    graph = table.graph
+    size = f"A network of {graph.n} {'vehicle' if graph.n == 1 else 'vehicles'} and {graph.arc_count} arcs. "
+    if graph.n < 2:
+        return size + "Fewer than two vehicles cannot disagree, whatever the threat."
+    sentences: dict[str, list[str]] = {}
+    for result in table.results:
+        sentences.setdefault(_outcome(result), []).append(_WHERE[result.model])
+    if len(sentences) == 1 and len(table) == len(THREAT_MODELS):
+        return f"{size}Under every threat model: {next(iter(sentences))}."
+    told = (f"{'; and '.join(where)}: {outcome}." for outcome, where in sentences.items())
+    return size + " ".join(sentence[0].upper() + sentence[1:] for sentence in told)
+
+
+def _promised(result: ToleranceResult) -> str:
+    f = result.guaranteed
+    if f < 0:
+        if result.refuted == 0:
+            return ""
+        return "nothing is guaranteed within the limit"
+    if f == 0:
+        return "agreement is guaranteed only while nobody lies (f = 0)"
+    return f"agreement is guaranteed for f = {f}" + (" and below" if f > 1 else "")
+
+
+def _refuted(result: ToleranceResult) -> str:
+    f, sets = result.refuted, result.attack_sets
+    if f is None or sets is None:
+        return "no attack is known within the limit"
+    if f == 0:
+        return "agreement fails even though nobody lies: two groups hear nothing from outside"
+    if not sets.M:
+        return f"for f = {f} it stays split for ever without a single liar, since everybody discards too much"
+    return f"for f = {f} an attack by {len(sets.M)} {'liar' if len(sets.M) == 1 else 'liars'} keeps it split for ever"
+
+
+def _between(which: Iterable[int], standing: Standing, result: ToleranceResult) -> str:
+    values = ", ".join(map(str, which))
+    if standing is Standing.UNDECIDED:
+        return f"f = {values} was not decided within the limit"
+    kind = "trap" if result.threat.two_faces else "attack by vehicles that stand still"
+    return f"f = {values} is open: the theorem promises nothing, and no {kind} exists"

@@ -1,0 +1,72 @@
+"""What a trap search is asked, and the definitions that every answer is re-checked against.
+
+Let ``f >= 0``. Three sets M, S1, S2 of nodes, and the normal members ``N_k = S_k - M``, both nonempty, hold a network
+apart when every node of N_k has at most f in-neighbours outside ``S_k`` (with one face) or outside ``S_k | M`` (with
+two). Then nodes that drop their f largest and f smallest values never move: N1 stays at one value and N2 at another
+for ever, because nobody in N_k hears anything but its own value from inside, and at most f values from outside.
+
+* *one face*: each malicious node says the same to all, so it is a member of S1 or of S2, ``M <= S1 | S2``, and stays
+  there; S1 and S2 are disjoint. With ``|M| <= f`` this is exactly a violation of (f+1,f+1)-robustness:
+  take ``M = X_S1 | X_S2`` (Theorem 1 of the source paper, necessity).
+* *two faces*: a malicious node shows side 1 one value and side 2 the other, by lying to each (Byzantine) or by
+  delays (see :mod:`robustness.constructions.traps`); M, S1 and S2 are disjoint. This is a *trap*.
+
+M is bounded in all (*total*: ``|M| <= f``) or around every normal node (*local*: every node outside M, also one in
+neither S1 nor S2, hears at most f nodes of M).
+
+Lemma (one face is weaker). If (M, S1, S2) is a solution with one face, ``(M, S1 - M, S2 - M)`` is one with two: what
+lies outside ``(S_k - M) | M`` lies outside S_k. So "no trap" implies (f+1,f+1)-robustness.
+
+Lemma (monotone). A solution for f is one for f + 1.
+
+Lemma ((2f+1)-robust graphs have none). Of N1 and N2 one has a node i with 2f + 1 in-neighbours outside N_k; at most f
+of them are malicious, total or local, so f + 1 are outside ``N_k | M``.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from robustness.digraph import Digraph
+
+__all__ = ["Question", "Sets", "obeys_bound", "solves"]
+
+
+class Question(NamedTuple):
+    """Is there a solution for f, with one face or two, M bounded in total or locally?"""
+
+    f: int
+    two_faces: bool = True
+    local: bool = False
+
+
+class Sets(NamedTuple):
+    """M, S1 and S2 as id sets. With one face the malicious nodes are members of S1 and S2, with two they are in
+    neither.
+    """
+
+    M: frozenset[int]
+    S1: frozenset[int]
+    S2: frozenset[int]
+
+
+def obeys_bound(graph: Digraph, M: frozenset[int], f: int, *, local: bool) -> bool:
+    """Return whether M has at most f nodes, or (local) every node outside M hears at most f of them."""
+    if not local:
+        return len(M) <= f
+    return all(len(M.intersection(graph.in_neighbours(i).tolist())) <= f for i in range(graph.n) if i not in M)
+
+
+def solves(graph: Digraph, question: Question, sets: Sets) -> bool:
+    """Return whether the sets answer the question: the definition in the module, nothing else."""
+    f, two_faces, local = question
+    M, S1, S2 = sets
+    if S1 & S2 or not S1 - M or not S2 - M:
+        return False
+    if (M & (S1 | S2)) if two_faces else M - S1 - S2:
+        return False
+    return obeys_bound(graph, M, f, local=local) and all(
+        sum(j not in side and not (two_faces and j in M) for j in graph.in_neighbours(i).tolist()) <= f
+        for side in (S1, S2)
+        for i in side - M
+    )
