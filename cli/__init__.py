@@ -1,0 +1,5 @@
+"""The command line ``robustness``: a thin shell over :mod:`robustness`, one file per command.
+
+Results go to standard output, everything else to standard error, and the exit code (:mod:`cli.exit_codes`)
+says what was proven.
+"""

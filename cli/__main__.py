@@ -1,0 +1,5 @@
+"""``python -m cli`` is ``robustness``."""
+
+from cli.main import main
+
+main()

@@ -1,0 +1,99 @@
+"""``robustness attack``: an attack that splits the network for ever, made from evidence and carried out."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from cli.options import (
+    algorithm_option,
+    graph_argument,
+    jobs_option,
+    json_option,
+    load_graph,
+    seed_option,
+    talk_options,
+    timeout_option,
+)
+from cli.output import Console, graph_document, pass_console
+from cli.simulate import exit_code
+
+if TYPE_CHECKING:
+    from robustness.simulation.attacks import Attack
+
+__all__ = ["SCHEMA", "command"]
+
+SCHEMA = "robustness/attack-result/1"
+
+
+@click.command("attack")
+@graph_argument
+@click.option("-f", "f", type=click.IntRange(min=0), default=1, show_default=True, help="How many nodes may lie.")
+@click.option(
+    "--model",
+    type=click.Choice(("malicious", "delayed", "byzantine")),
+    default="malicious",
+    show_default=True,
+    help="Synchronous; with delays (the two-face attack); or different lies to different neighbours.",
+)
+@click.option("--steps", type=click.IntRange(min=1), default=1000, show_default=True, help="How long it is played.")
+@click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE", help="Write it.")
+@click.option("--expect", type=click.Choice(("agreement", "split")), help="Exit with 10 when it ends otherwise.")
+@json_option
+@algorithm_option
+@timeout_option
+@jobs_option
+@seed_option
+@talk_options
+@pass_console
+@click.pass_context
+def command(
+    ctx: click.Context,
+    console: Console,
+    source: str,
+    f: int,
+    model: str,
+    steps: int,
+    output: Path | None,
+    expect: str | None,
+    as_json: bool,
+    algorithm: str,
+    timeout: float | None,
+    jobs: int,
+    seed: int,
+) -> None:
+    """Find an attack of F nodes that splits GRAPH, carry it out, and write it to a file for 'simulate --attack'.
+
+    Exit code 0 when the attack splits the network exactly; 10 when it is proven that F nodes cannot; 30 undecided.
+    With --expect: 0 for that outcome and 10 for the other.
+    """
+    from robustness.simulation.finding import find_attack
+
+    graph = load_graph(source)
+    found = find_attack(graph, f, model, algorithm=algorithm, time_limit=timeout, jobs=jobs, seed=seed)
+    if found.attack is not None:
+        _carry_out(found.attack, steps)
+        if output is not None:
+            output.write_text(json.dumps(found.attack.as_dict(), indent=1) + "\n", encoding="utf-8")
+            console.talk(f"wrote {output}")
+    if as_json:
+        attack = None if found.attack is None else found.attack.as_dict()
+        content = {"f": f, "model": model, "outcome": found.outcome, "reason": found.reason, "attack": attack}
+        console.document(SCHEMA, {"graph": graph_document(graph), **content})
+    else:
+        color = {"agreement": "green", "split": "red", "undecided": "yellow"}[found.outcome]
+        console.result(f"{click.style(found.outcome + ':', fg=color, bold=True)} {found.reason}")
+    ctx.exit(exit_code(found.outcome, expect or "split"))
+
+
+def _carry_out(attack: Attack, steps: int) -> None:
+    """Run the attack under every rule it is made for; anything but an exact split is a bug."""
+    from robustness.errors import InternalError
+
+    for rule in ("adp-msr", "w-msr") if attack.delayed else ("adp-msr", "dp-msr", "w-msr"):
+        if not attack.run(steps, rule=rule).exact:
+            raise InternalError(f"an attack made from checked evidence did not split under {rule}: please report")
+

@@ -1,0 +1,189 @@
+"""``robustness build``: graphs of the families with known robustness, and the counterexamples."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from cli.exit_codes import ExitCode
+from cli.options import json_option, talk_options
+from cli.output import Console, graph_document, pass_console
+
+if TYPE_CHECKING:
+    import networkx as nx
+
+    from robustness.constructions import Family, KnownRobustness
+
+__all__ = ["SCHEMA", "command", "encode_with_attributes", "write_graph"]
+
+SCHEMA = "robustness/build/1"
+LIST_SCHEMA = "robustness/build-list/1"
+
+
+class FamilyGroup(click.Group):
+    """One subcommand per family, its options made from the family's parameters."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names of all families."""
+        from robustness.constructions import FAMILIES
+
+        return list(FAMILIES)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Return the subcommand of one family."""
+        from robustness.constructions import FAMILIES
+
+        return _family_command(FAMILIES[cmd_name]) if cmd_name in FAMILIES else None
+
+
+@click.group(
+    "build",
+    cls=FamilyGroup,
+    invoke_without_command=True,
+    no_args_is_help=True,
+    subcommand_metavar="NAME [PARAMETERS]...",
+)
+@click.option("--list", "wants_list", is_flag=True, help="List all families with parameters and known values.")
+@json_option
+@talk_options
+@pass_console
+@click.pass_context
+def command(ctx: click.Context, console: Console, wants_list: bool, as_json: bool) -> None:
+    """Build a graph of a family with known robustness, or a counterexample.
+
+    Writes node-link JSON to standard output, so that it pipes into "robustness check -", or to a file in the
+    format of its suffix. "robustness build NAME --help" shows the parameters and what is known.
+    """
+    if wants_list:
+        _print_list(console, as_json)
+        ctx.exit(ExitCode.DONE)
+    if ctx.invoked_subcommand is None:
+        raise click.UsageError("Give the NAME of a family, or --list.")
+
+
+def _print_list(console: Console, as_json: bool) -> None:
+    from robustness.constructions import FAMILIES
+
+    if as_json:
+        families = [
+            {
+                "name": family.name,
+                "summary": family.summary,
+                "value": family.value,
+                "parameters": [
+                    {"name": each.name, "type": each.kind, "default": None if each.required else each.default}
+                    for each in family.parameters
+                ],
+            }
+            for family in FAMILIES.values()
+        ]
+        console.document(LIST_SCHEMA, {"families": families})
+        return
+    width = max(map(len, FAMILIES))
+    for family in FAMILIES.values():
+        flags = " ".join(
+            f"--{each.name} {_METAVARS[each.kind]}" if each.required else f"[--{each.name}]"
+            for each in family.parameters
+        )
+        console.result(f"{family.name:<{width}}  {flags}")
+        console.result(f"{'':<{width}}  {family.summary.replace('``', '')} {family.value}.")
+
+
+#: How --list and --help call values of each type.
+_METAVARS = {"int": "N", "float": "X", "str": "NAME", "bool": "", "Sequence[int]": "N,N,..."}
+
+
+def _family_command(family: Family) -> click.Command:
+    """Return the subcommand that builds graphs of one family."""
+    import inspect
+
+    options: list[click.Parameter] = []
+    for each in family.parameters:
+        settings: dict[str, Any] = {"required": each.required}
+        if not each.required:
+            settings |= {"default": each.default, "show_default": True}
+        if each.kind == "bool":
+            settings |= {"is_flag": True}
+        else:
+            settings |= {"metavar": _METAVARS[each.kind], "type": str}
+        options.append(click.Option([f"--{each.name}", each.name], **settings))
+    output = click.Option(
+        ["-o", "--output"], type=click.Path(dir_okay=False), metavar="FILE", help="Write there, by the suffix."
+    )
+
+    @pass_console
+    @click.pass_context
+    def build_one(ctx: click.Context, console: Console, /, output: str | None, as_json: bool, **given: Any) -> None:
+        parameters = {
+            each.name: each.parse(given[each.name]) if isinstance(given[each.name], str) else given[each.name]
+            for each in family.parameters
+        }
+        _build(
+            console, family.name, parameters, output, as_json or bool(ctx.parent and ctx.parent.params.get("as_json"))
+        )
+        ctx.exit(ExitCode.DONE)
+
+    made = click.Command(
+        family.name,
+        params=[*options, output],
+        callback=build_one,
+        help=(inspect.getdoc(family.build) or "").replace("``", ""),
+        short_help=family.summary,
+    )
+    decorated: click.Command = json_option(talk_options(made))
+    return decorated
+
+
+def _build(console: Console, name: str, parameters: Mapping[str, Any], output: str | None, as_json: bool) -> None:
+    from robustness.constructions import build, known_robustness
+    from robustness.digraph import as_digraph
+
+    graph = build(name, **parameters)
+    known = known_robustness(name, **parameters)
+    if output is not None:
+        write_graph(graph, output)
+    if as_json:
+        document = {
+            "family": graph.graph["family"],
+            "graph": graph_document(as_digraph(graph)),
+            "known": None if known is None else {"r": known.r, "s": known.s, "source": known.source},
+            "topology": json.loads(encode_with_attributes(graph)),
+        }
+        console.document(SCHEMA, document)
+    elif output is None:
+        console.result(encode_with_attributes(graph).decode("ascii").rstrip("\n"))
+    # What is said is the result when the graph itself goes to a file.
+    say = console.talk if as_json or output is None else console.result
+    say(f"{name}: {len(graph)} nodes, {graph.size()} {'arcs' if graph.is_directed() else 'edges'}")
+    say(_known_text(known))
+    if "trap" in graph.graph:
+        say("trap: " + ", ".join(f"{key} = {nodes}" for key, nodes in graph.graph["trap"].items()))
+
+
+def _known_text(known: KnownRobustness | None) -> str:
+    if known is None:
+        return "known: nothing; compute it with: robustness check"
+    s = "" if known.s is None else f", greatest s for it {known.s}"
+    return f"known: r* {'=' if known.exact else '>='} {known.r}{s} ({known.source})"
+
+
+def encode_with_attributes(graph: nx.Graph) -> bytes:
+    """Return node-link JSON that keeps the attributes of the graph itself, a trap for instance, under ``graph``."""
+    from robustness.files import encode_topology
+
+    attributes = json.dumps(graph.graph, ensure_ascii=True)
+    return encode_topology(graph).replace(b'"graph": {}', b'"graph": ' + attributes.encode("ascii"), 1)
+
+
+def write_graph(graph: nx.Graph, output: str) -> None:
+    """Write ``graph`` to a file in the format of its suffix; node-link JSON keeps the graph's attributes."""
+    from robustness.files import replace_file, write_topology
+
+    if graph.graph and Path(output).suffix.lower() == ".json":
+        replace_file(output, encode_with_attributes(graph))
+    else:
+        write_topology(graph, output)

@@ -1,0 +1,122 @@
+"""``robustness certify``: decide, and write a certificate for either verdict."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from cli.exit_codes import ExitCode
+from cli.interruption import Overrun, interruptibly
+from cli.options import (
+    graph_argument,
+    jobs_option,
+    json_option,
+    load_graph,
+    seed_option,
+    talk_options,
+    timeout_option,
+)
+from cli.output import Console, ProgressLine, graph_document, pass_console
+
+__all__ = ["SCHEMA", "command"]
+
+SCHEMA = "robustness/certify/1"
+
+
+@click.command("certify")
+@graph_argument
+@click.option("-r", type=click.IntRange(min=1), required=True, help="Is GRAPH (R,S)-robust?")
+@click.option("-s", type=click.IntRange(min=1), default=1, show_default=True, help="1 is r-robustness.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="Where the certificate goes.")
+@click.option(
+    "--canonical",
+    type=click.Path(path_type=Path),
+    help="Also write the canonical graph, which 'python -m certificates verify' reads whatever GRAPH's format.",
+)
+@click.option(
+    "--proof-format",
+    type=click.Choice(["tree", "veripb"]),
+    default="tree",
+    show_default=True,
+    help="veripb: also write OUTPUT.opb and OUTPUT.pbp for a third party's checker.",
+)
+@click.option("--veripb-version", type=click.Choice(["3.0", "1.1"]), default="3.0", show_default=True)
+@json_option
+@timeout_option
+@jobs_option
+@seed_option
+@talk_options
+@pass_console
+@click.pass_context
+def command(
+    ctx: click.Context,
+    console: Console,
+    source: str,
+    r: int,
+    s: int,
+    output: Path,
+    canonical: Path | None,
+    proof_format: str,
+    veripb_version: str,
+    as_json: bool,
+    timeout: float | None,
+    jobs: int,
+    seed: int,
+) -> None:
+    """Decide whether GRAPH is (R,S)-robust and write a certificate of the answer.
+
+    The certificate proves either verdict to anybody: 'robustness verify GRAPH FILE', or 'python -m certificates
+    verify', which needs nothing but Python. It has been verified before it is written. Exit code 0 robust, 10 not
+    robust, 30 undecided (nothing is written).
+    """
+    from robustness.certification import certify
+    from robustness.files import replace_file
+    from robustness.results import RobustnessResult, Verdict
+
+    graph = load_graph(source)
+    with ProgressLine(console) as line:
+
+        def work() -> RobustnessResult:
+            return certify(graph, r, s, time_limit=timeout, jobs=jobs, seed=seed, progress=line)
+
+        try:
+            result = interruptibly(work, timeout, line.tick)
+        except Overrun:
+            result = RobustnessResult(Verdict.UNDECIDED, r, s, stats={"reason": "the time limit was reached"})
+    written: dict[str, str] = {}
+    if result.certificate is not None:
+        replace_file(output, result.certificate)
+        written["certificate"] = str(output)
+        if canonical is not None:
+            replace_file(canonical, graph.canonical_bytes())
+            written["canonical"] = str(canonical)
+        if proof_format == "veripb" and result.verdict.value == "robust":
+            from robustness.veripb import export
+
+            model, proof = export(graph.canonical_bytes(), result.certificate, version=veripb_version)
+            for suffix, text in ((".opb", model), (".pbp", proof)):
+                replace_file(output.with_name(output.name + suffix), text)
+                written[suffix[1:]] = str(output.with_name(output.name + suffix))
+    if as_json:
+        console.document(
+            SCHEMA,
+            {
+                "graph": graph_document(graph),
+                "verdict": result.verdict.value,
+                "r": r,
+                "s": s,
+                "algorithm": result.algorithm,
+                "bytes": len(result.certificate or b""),
+                "files": written,
+                "seconds": round(result.seconds, 6),
+            },
+        )
+    else:
+        console.result(f"{result.summary()}: {source}, {graph.n} nodes, {graph.arc_count} arcs")
+        if result.certificate is None:
+            console.result(f"nothing is certified: {result.stats.get('reason', 'a limit was reached')}")
+        for kind, path in written.items():
+            size = f" ({len(result.certificate or b''):,} bytes, verified)" if kind == "certificate" else ""
+            console.result(f"{kind:<12}{path}{size}")
+    ctx.exit(ExitCode.of_verdict(result.verdict.value))

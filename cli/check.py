@@ -1,0 +1,285 @@
+"""``robustness check``: decide one (r,s), or determine r*, s and the profile."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from cli.exit_codes import ExitCode
+from cli.interruption import Overrun, interruptibly
+from cli.options import (
+    algorithm_option,
+    graph_argument,
+    jobs_option,
+    json_option,
+    load_graph,
+    seed_option,
+    talk_options,
+    timeout_option,
+)
+from cli.output import Console, ProgressLine, graph_document, pass_console, set_document, set_text
+
+if TYPE_CHECKING:
+    from robustness.digraph import Digraph
+    from robustness.results import Bounds, RobustnessResult, Witness
+
+__all__ = ["PROFILE_NODES", "SCHEMA", "command"]
+
+SCHEMA = "robustness/check/1"
+
+#: Up to this many nodes the whole profile is shown: seconds by the subset-minimum transform, O(n 2^n).
+PROFILE_NODES = 22
+
+
+@dataclass(slots=True)
+class Report:
+    """What is known when the command ends, by itself, by a limit or by Ctrl-C."""
+
+    graph: Digraph
+    verdict: str
+    r: int
+    s: int
+    bounds: Bounds
+    s_bounds: Bounds | None = None
+    witness: Witness | None = None
+    profile: Mapping[int, int] | None = None
+    algorithm: str = ""
+    reason: str = ""
+    seconds: float = 0.0
+    is_decision: bool = False
+    is_interrupted: bool = False
+
+    def _bounds(self) -> dict[str, Any]:
+        """Return what is proven about r*, and about the greatest s for it where that was asked."""
+        content = self.bounds.as_dict()
+        if self.s_bounds is not None:
+            content |= {"s_lower": self.s_bounds.lower.value, "s_upper": self.s_bounds.upper.value}
+        return content
+
+    def document(self) -> dict[str, Any]:
+        """Return the content of the schema ``robustness/check/1``."""
+        pair = self.witness
+        return {
+            "graph": graph_document(self.graph),
+            "verdict": self.verdict,
+            "r": self.r,
+            "s": self.s,
+            "profile": None if self.profile is None else {str(r): s for r, s in self.profile.items()},
+            "bounds": self._bounds(),
+            "witness": None if pair is None else {"S1": set_document(pair.S1), "S2": set_document(pair.S2)},
+            "algorithm": self.algorithm,
+            "seconds": round(self.seconds, 6),
+        }
+
+
+@click.command("check")
+@graph_argument
+@click.option("-r", type=click.IntRange(min=0), help="Decide whether GRAPH is (R,S)-robust.")
+@click.option("-s", type=click.IntRange(min=1), help="With -r; 1 unless given, which is r-robustness.")
+@json_option
+@algorithm_option
+@timeout_option
+@jobs_option
+@seed_option
+@talk_options
+@pass_console
+@click.pass_context
+def command(
+    ctx: click.Context,
+    console: Console,
+    source: str,
+    r: int | None,
+    s: int | None,
+    as_json: bool,
+    algorithm: str,
+    timeout: float | None,
+    jobs: int,
+    seed: int,
+) -> None:
+    """Decide robustness exactly, with evidence.
+
+    With -r: is GRAPH (R,S)-robust? Exit code 0 yes, 10 no (with a violating pair), 30 undecided. Without -r: the
+    greatest r, the greatest s for it, and on small graphs the whole profile r -> greatest s.
+    """
+    if s is not None and r is None:
+        raise click.UsageError("-s says how many nodes go with -r: give -r as well.")
+    graph = load_graph(source)
+    options = {"algorithm": algorithm, "jobs": jobs, "seed": seed}
+    with ProgressLine(console) as line:
+        if r is None:
+            report = _determine(graph, timeout, options, line)
+        else:
+            report = _decide(graph, r, 1 if s is None else s, timeout, options, line)
+    if as_json:
+        console.document(SCHEMA, report.document())
+    else:
+        console.result("\n".join(_lines(report, source, whole=console.is_verbose)))
+    if report.is_interrupted:
+        console.error("interrupted: what is printed holds, nothing else is claimed")
+        ctx.exit(ExitCode.INTERRUPTED)
+    ctx.exit(ExitCode.of_verdict(report.verdict))
+
+
+def _decide(
+    graph: Digraph, r: int, s: int, timeout: float | None, options: dict[str, Any], line: ProgressLine
+) -> Report:
+    from robustness.checking import check_rs_robustness
+
+    started = time.perf_counter()
+
+    def work() -> RobustnessResult:
+        return check_rs_robustness(graph, r, s, time_limit=timeout, progress=line, **options)
+
+    try:
+        report = _report_on(graph, interruptibly(work, timeout, line.tick))
+    except (KeyboardInterrupt, Overrun) as stop:
+        report = _stopped(graph, r, s, line, options, stop)
+    report.is_decision, report.seconds = True, time.perf_counter() - started
+    return report
+
+
+def _determine(graph: Digraph, timeout: float | None, options: dict[str, Any], line: ProgressLine) -> Report:
+    from robustness.checking import determine_robustness
+
+    started = time.perf_counter()
+
+    def work() -> RobustnessResult:
+        note = line.note_bounds
+        return determine_robustness(graph, time_limit=timeout, progress=line, on_bounds=note, **options)
+
+    try:
+        report = _report_on(graph, interruptibly(work, timeout, line.tick))
+    except (KeyboardInterrupt, Overrun) as stop:
+        report = _stopped(graph, 0, 1, line, options, stop)
+        report.r = report.bounds.lower.value
+    else:
+        if report.verdict == "determined" and graph.n <= PROFILE_NODES:
+            left = None if timeout is None else timeout - (time.perf_counter() - started)
+            _add_profile(report, left, options, line)
+    report.seconds = time.perf_counter() - started
+    return report
+
+
+def _add_profile(report: Report, left: float | None, options: dict[str, Any], line: ProgressLine) -> None:
+    from robustness.checking import robustness_profile
+    from robustness.errors import InternalError, Undecided
+
+    if left is not None and left <= 0:
+        return
+
+    def work() -> Mapping[int, int]:
+        return robustness_profile(report.graph, time_limit=left, progress=line, **options)
+
+    try:
+        profile = interruptibly(work, left, line.tick)
+    except (Undecided, Overrun):
+        return
+    except KeyboardInterrupt:
+        report.is_interrupted = True
+        return
+    if profile.get(report.r, report.s) != report.s or profile.get(report.r + 1, 0):
+        raise InternalError(f"the profile {dict(profile)} contradicts r* = {report.r}, s = {report.s}: please report")
+    report.profile = profile
+
+
+def _report_on(graph: Digraph, result: RobustnessResult) -> Report:
+    return Report(
+        graph,
+        result.verdict.value,
+        result.r,
+        result.s,
+        result.bounds or _trivial_bounds(graph),
+        result.s_bounds,
+        result.witness,
+        algorithm=result.algorithm,
+        reason=str(result.stats.get("reason", "")),
+    )
+
+
+def _stopped(
+    graph: Digraph, r: int, s: int, line: ProgressLine, options: dict[str, Any], stop: BaseException
+) -> Report:
+    """Return what is proven when the search itself cannot tell any more."""
+    is_interrupted = isinstance(stop, KeyboardInterrupt)
+    bounds = line.bounds or _trivial_bounds(graph)
+    return Report(
+        graph,
+        "undecided",
+        r,
+        s,
+        bounds,
+        witness=bounds.upper.witness,
+        algorithm=options["algorithm"],
+        reason="interrupted" if is_interrupted else "the time limit was reached",
+        is_interrupted=is_interrupted,
+    )
+
+
+def _trivial_bounds(graph: Digraph) -> Bounds:
+    from robustness.definitions import largest_conceivable_r
+    from robustness.results import Bound, Bounds
+
+    return Bounds(Bound(0, "every graph is 0-robust"), Bound(largest_conceivable_r(graph.n), "r* <= ceil(n/2)"))
+
+
+def _lines(report: Report, source: str, *, whole: bool) -> Iterator[str]:
+    graph, bounds = report.graph, report.bounds
+    yield _headline(report)
+    if report.witness is not None:
+        yield _witness_heading(report)
+        yield f"  S1 = {set_text(report.witness.S1, whole=whole)}"
+        yield f"  S2 = {set_text(report.witness.S2, whole=whole)}"
+    kind = "directed" if graph.directed else "undirected"
+    yield f"graph      {source}: {graph.n} nodes, {graph.arc_count} arcs, {kind}"
+    yield f"r* >= {bounds.lower.value:<4} {bounds.lower.reason}"
+    yield f"r* <= {bounds.upper.value:<4} {bounds.upper.reason}"
+    if report.s_bounds is not None and report.s_bounds.lower.value < report.s_bounds.upper.value:
+        low, high = report.s_bounds.lower, report.s_bounds.upper
+        yield f"s  >= {low.value:<4} for r = {report.r}: {low.reason}"
+        yield f"s  <= {high.value:<4} for r = {report.r}: {high.reason}"
+    if report.profile:
+        yield from _profile_table(report.profile)
+    yield f"algorithm  {report.algorithm}"
+    yield f"time       {report.seconds:.3f} s"
+
+
+def _headline(report: Report) -> str:
+    r, s = report.r, report.s
+    name = f"{r}-robust" if s == 1 else f"({r},{s})-robust"
+    match report.verdict:
+        case "robust":
+            return f"{click.style('robust:', fg='green', bold=True)} the network is {name}"
+        case "not-robust":
+            return f"{click.style('not robust:', fg='red', bold=True)} the network is not {name}"
+        case "determined":
+            verdict = click.style("determined:", fg="green", bold=True)
+            greatest = f"for r = {r} the greatest s is {s}"
+            if report.s_bounds is not None and report.s_bounds.upper.value > s:
+                greatest = f"for r = {r} the greatest s is at least {s} and at most {report.s_bounds.upper.value}"
+            return f"{verdict} r* = {r}: the network is {r}-robust, not {r + 1}-robust; {greatest}"
+        case _:
+            what = f"whether the network is {name}" if report.is_decision else "the greatest r"
+            why = f" ({report.reason})" if report.reason else ""
+            verdict = click.style("undecided:", fg="yellow", bold=True)
+            return f"{verdict} {what} is not known{why}; only the bounds are proven"
+
+
+def _witness_heading(report: Report) -> str:
+    if report.is_decision:
+        r, s = report.r, report.s
+    else:
+        r, s = report.bounds.upper.value + 1, 1
+    if s == 1:
+        return f"no node of either set has {r} or more in-neighbours outside its own set:"
+    few = f"fewer than {r} in-neighbours outside its own set"
+    return f"in each set some node has {few}, and of all nodes of both fewer than {s} have {r} or more:"
+
+
+def _profile_table(profile: Mapping[int, int]) -> Iterator[str]:
+    width = max(len(str(value)) for pair in profile.items() for value in pair)
+    for name, row in (("r", profile.keys()), ("greatest s", profile.values())):
+        yield f"{name:<11}" + " ".join(f"{value:>{width}}" for value in row)

@@ -1,0 +1,166 @@
+"""``robustness find``: search for a graph with given properties, or prove that none exists."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from cli.build import encode_with_attributes, write_graph
+from cli.exit_codes import ExitCode
+from cli.interruption import Overrun, interruptibly
+from cli.options import jobs_option, json_option, seed_option, talk_options, timeout_option
+from cli.output import Console, graph_document, pass_console
+
+if TYPE_CHECKING:
+    from robustness.graph_search import FindResult
+
+__all__ = ["SCHEMA", "command"]
+
+SCHEMA = "robustness/find/1"
+
+
+class NodeNumbers(click.ParamType):  # type: ignore[type-arg]  # generic only from click 8.4 on
+    """``5`` or ``2..7``."""
+
+    name = "nodes"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> range:
+        """Return the numbers of nodes that ``value`` spells."""
+        match = re.fullmatch(r"(\d{1,4})(?:\.\.(\d{1,4}))?", str(value))
+        if match is None:
+            self.fail(f"{value!r} is neither a number of nodes nor a range such as 2..7.", param, ctx)
+        low, high = int(match[1]), int(match[2] or match[1])
+        if high < low:
+            self.fail(f"{value!r} is an empty range.", param, ctx)
+        return range(low, high + 1)
+
+
+@click.command("find")
+@click.option(
+    "-n",
+    "--nodes",
+    type=NodeNumbers(),
+    required=True,
+    metavar="N|N..N",
+    help="The number of nodes; of several, the least.",
+)
+@click.option("--satisfies", "-p", multiple=True, metavar="PROPERTY", help="A property it has; repeat for more.")
+@click.option("--violates", "-x", multiple=True, metavar="PROPERTY", help="A property it has not; repeat for more.")
+@click.option("--directed", is_flag=True, help="Search among digraphs.")
+@click.option("--fewest-edges", is_flag=True, help="Look for a graph with the fewest edges.")
+@click.option("-o", "--output", type=click.Path(dir_okay=False), metavar="FILE", help="Write the graph there.")
+@json_option
+@timeout_option
+@jobs_option
+@seed_option
+@talk_options
+@pass_console
+@click.pass_context
+def command(
+    ctx: click.Context,
+    console: Console,
+    nodes: range,
+    satisfies: tuple[str, ...],
+    violates: tuple[str, ...],
+    directed: bool,
+    fewest_edges: bool,
+    output: str | None,
+    as_json: bool,
+    timeout: float | None,
+    jobs: int,
+    seed: int,
+) -> None:
+    r"""Search for a graph that has, or has not, given properties.
+
+    \b
+    PROPERTY is 2-robust  (2,2)-robust  3-connected  4-regular  trap(1)
+                min-degree>=3  max-degree<=4  edges<=12  edges>=8  edges=9
+
+    Up to 7 nodes (digraphs: 5) all graphs are tried; beyond, a constraint solver proposes graphs and learns from
+    what breaks them. Exit code 0 found (the graph goes to standard output or FILE), 10 none exists, 30 undecided.
+    """
+    from robustness.graph_search import FindResult, FindVerdict, find_graph
+
+    def work() -> FindResult:
+        return find_graph(
+            nodes,
+            satisfies,
+            violates,
+            directed=directed,
+            minimise="edges" if fewest_edges else None,
+            time_limit=timeout,
+            jobs=jobs,
+            seed=seed,
+        )
+
+    try:
+        result = interruptibly(work, timeout)
+    except Overrun:
+        result = FindResult(FindVerdict.UNDECIDED, stats={"reason": "the time limit was reached"})
+    if output is not None and result.graph is not None:
+        write_graph(result.graph, output)
+    if as_json:
+        console.document(SCHEMA, _document(result))
+    else:
+        _print(console, result, nodes, output)
+    codes = {
+        FindVerdict.FOUND: ExitCode.DONE,
+        FindVerdict.IMPOSSIBLE: ExitCode.REFUTED,
+        FindVerdict.UNDECIDED: ExitCode.UNDECIDED,
+    }
+    ctx.exit(codes[result.verdict])
+
+
+def _document(result: FindResult) -> dict[str, Any]:
+    from robustness.digraph import as_digraph
+
+    graph = result.graph
+    return {
+        "verdict": result.verdict.value,
+        "n": result.n,
+        "edges": result.edges,
+        "has_fewest_edges": result.has_fewest_edges,
+        "edges_at_least": result.edges_at_least,
+        "impossible_for": list(result.impossible_for),
+        "graph": None if graph is None else graph_document(as_digraph(graph)),
+        "trap": None if graph is None else graph.graph.get("trap"),
+        "topology": None if graph is None else json.loads(encode_with_attributes(graph)),
+        "method": result.method,
+        "stats": dict(result.stats),
+        "seconds": round(result.seconds, 6),
+    }
+
+
+def _print(console: Console, result: FindResult, nodes: range, output: str | None) -> None:
+    """Print the graph, if any, on standard output and the verdict beside it; a verdict alone is the result."""
+    text = _verdict_text(result, nodes)
+    if result.graph is None or output is not None:
+        console.result(text)
+    else:
+        console.result(encode_with_attributes(result.graph).decode("ascii").rstrip("\n"))
+        console.talk(text)
+
+
+def _verdict_text(result: FindResult, nodes: range) -> str:
+    from robustness.graph_search import FindVerdict
+
+    smaller = f"; none on {_numbers(result.impossible_for)} nodes" if result.impossible_for else ""
+    fewest = ", no graph with fewer fits" if result.has_fewest_edges else ""
+    match result.verdict:
+        case FindVerdict.FOUND:
+            return f"found: {result.n} nodes, {result.edges} edges{fewest}{smaller}"
+        case FindVerdict.IMPOSSIBLE:
+            return f"impossible: no graph on {_numbers(nodes)} nodes fits"
+        case _:
+            reason = result.stats.get("reason", "a limit was reached")
+            if result.graph is not None:
+                known = f"a graph with {result.edges} edges fits, whether one with {result.edges_at_least} does is open"
+                return f"undecided: on {result.n} nodes {known} ({reason})"
+            return f"undecided: {reason}{smaller}"
+
+
+def _numbers(sizes: range | tuple[int, ...]) -> str:
+    return f"{sizes[0]}" if len(sizes) == 1 else f"{sizes[0]}..{sizes[-1]}"

@@ -1,0 +1,332 @@
+"""``robustness joint``: is a time-varying network jointly (R,S)-robust, and over how few steps?"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from cli.exit_codes import ExitCode
+from cli.interruption import Overrun, interruptibly
+from cli.options import algorithm_option, jobs_option, json_option, seed_option, talk_options, timeout_option
+from cli.output import Console, ProgressLine, pass_console, set_document, set_text
+
+if TYPE_CHECKING:
+    from robustness.time_varying import JointResult, TimeVaryingGraph, Violation
+
+__all__ = ["SCHEMA", "command"]
+
+SCHEMA = "robustness/joint/1"
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """What the command found: the decision, the curve if asked for and not stopped by a limit, what to draw."""
+
+    sequence: TimeVaryingGraph
+    result: JointResult
+    curve: Mapping[int, int | None] | None
+    shown: JointResult
+    certificate: bytes | None = None
+
+    def document(self) -> dict[str, Any]:
+        """Return the content of the schema ``robustness/joint/1``."""
+        sequence, result = self.sequence, self.result
+        return {
+            "sequence": {
+                "nodes": sequence.n,
+                "steps": len(sequence),
+                "period": sequence.period,
+                "arcs": len(sequence.arc_codes),
+                "directed": sequence.directed,
+            },
+            "verdict": result.verdict.value,
+            "r": result.r,
+            "s": result.s,
+            "asked_window": result.asked_window,
+            "window": result.window,
+            "at_least": result.at_least,
+            "tau": result.tau,
+            "within_tau": result.within_tau,
+            "violation": _violation_document(result.violation),
+            "shorter_fails": _violation_document(result.shorter_fails),
+            "windows": {
+                "length": result.examined,
+                "decided": len(result.window_unions),
+                "unions": len(result.unions),
+                "failing": list(result.failing_starts()),
+            },
+            "curve": None if self.curve is None else {str(r): window for r, window in self.curve.items()},
+            "reason": result.reason,
+            "stats": dict(result.stats),
+            "seconds": round(result.seconds, 6),
+        }
+
+
+@click.command("joint")
+@click.argument("source", metavar="SEQ")
+@click.option("-r", type=click.IntRange(min=0), required=True, help="Jointly (R,S)-robust?")
+@click.option("-s", type=click.IntRange(min=1), default=1, show_default=True, help="See -r; 1 is r-robustness.")
+@click.option("--window", type=click.IntRange(min=1), metavar="L", help="Over every L steps; else find the smallest L.")
+@click.option("--tau", type=click.IntRange(min=0), metavar="T", help="A delay bound: say whether L <= T as well.")
+@click.option("--period", type=click.IntRange(min=1), metavar="P", help="The last P steps of SEQ repeat for ever.")
+@click.option("--step", metavar="TIME", help="Length of a bin of a contact trace.  [default: 1]")
+@click.option("--both-ways", is_flag=True, help="A contact of a contact trace is both arcs.")
+@click.option("--all-windows", is_flag=True, help="With --window: decide every window, also after one that fails.")
+@click.option("--curve", "with_curve", is_flag=True, help="For every r the smallest L as well.")
+@click.option("--picture", type=click.Path(dir_okay=False), metavar="FILE", help="Draw windows and curve (PNG, SVG).")
+@click.option("-o", "--certificate", type=click.Path(path_type=Path), metavar="FILE", help="Where a certificate goes.")
+@click.option("--canonical", type=click.Path(path_type=Path), metavar="FILE", help="Where the canonical SEQ goes.")
+@json_option
+@algorithm_option
+@timeout_option
+@jobs_option
+@seed_option
+@talk_options
+@pass_console
+@click.pass_context
+def command(
+    ctx: click.Context,
+    console: Console,
+    source: str,
+    r: int,
+    s: int,
+    window: int | None,
+    tau: int | None,
+    period: int | None,
+    step: str | None,
+    both_ways: bool,
+    all_windows: bool,
+    with_curve: bool,
+    picture: str | None,
+    certificate: Path | None,
+    canonical: Path | None,
+    as_json: bool,
+    algorithm: str,
+    timeout: float | None,
+    jobs: int,
+    seed: int,
+) -> None:
+    """Decide whether a time-varying network is jointly (R,S)-robust.
+
+    That is: over some L, the union of the graphs of every L consecutive steps is (R,S)-robust. Without --window
+    the smallest L is found; with it, the first window that fails is shown with its violating pair.
+
+    \b
+    SEQ is a directory       one topology file a step, in the order of the names
+           .json or -        {"nodes": [...], "period": P or null, "steps": [[[u, v], ...], ...]}
+                             or a list of node-link documents
+           .jsonl            a step a line
+           .csv              contacts time,source,target, put into bins of --step
+
+    A finite SEQ says nothing about what comes after it: its windows do not wrap. With a period they do.
+    'python -m certificates verify-joint' verifies what --canonical and --certificate write, with nothing but Python.
+    Exit code 0 yes, 10 no, 30 undecided, or no certificate in time.
+    """
+    from robustness.errors import Undecided
+    from robustness.time_varying import read_sequence
+
+    if all_windows and window is None:
+        raise click.UsageError("--all-windows decides every window of one length: give --window as well.")
+    sequence = read_sequence(source, period=period, step=step, both_ways=both_ways)
+    with ProgressLine(console) as line:
+        options = {"algorithm": algorithm, "jobs": jobs, "seed": seed, "progress": line}
+        survey = Survey(sequence, r, s, tau, Clock(timeout), options)
+        drawn = picture is not None
+        try:
+            report = interruptibly(
+                lambda: survey.report(
+                    window, all_windows or drawn, with_curve or drawn, drawn, certified=certificate is not None
+                ),
+                timeout,
+                line.tick,
+            )
+        except Overrun:
+            report = survey.overrun(window)
+    if picture is not None:
+        from robustness.figures.joint import draw_joint
+
+        draw_joint(sequence, report.shown, report.curve, picture)
+    written = _write(report, certificate, canonical)
+    if as_json:
+        asked = {} if certificate is canonical is None else {"files": written}
+        console.document(SCHEMA, report.document() | asked)
+    else:
+        console.result("\n".join(_lines(report, source, whole=console.is_verbose)))
+    if picture is not None:
+        console.talk(f"wrote {picture}")
+    for path in written.values():
+        console.talk(f"wrote {path}")
+    if certificate is not None and report.certificate is None:
+        raise Undecided("no certificate: the time limit was reached: raise --timeout")
+    ctx.exit(ExitCode.of_verdict(report.result.verdict.value))
+
+
+class Clock:
+    """How much of the time limit is left for the next part of the command."""
+
+    def __init__(self, timeout: float | None) -> None:
+        self._deadline = None if timeout is None else time.monotonic() + timeout
+
+    def left(self) -> float | None:
+        """Return the seconds left: when there are none a moment, in which nothing is searched."""
+        return None if self._deadline is None else max(1e-9, self._deadline - time.monotonic())
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """The questions that the command asks about one sequence, under one time limit."""
+
+    sequence: TimeVaryingGraph
+    r: int
+    s: int
+    tau: int | None
+    clock: Clock
+    options: Mapping[str, Any]
+
+    def report(
+        self, window: int | None, all_windows: bool, with_curve: bool, drawn: bool, *, certified: bool = False
+    ) -> Report:
+        """Answer the question of the command line, and what goes with it."""
+        result = shown = self._decide(window, all_windows)
+        if drawn and window is None and result.shorter_fails is not None:
+            # At the smallest length nothing fails: the length below it makes the picture.
+            shown = self._decide(result.shorter_fails.length, all_windows=True)
+        report = Report(self.sequence, result, self._curve() if with_curve else None, shown)
+        return replace(report, certificate=self._certificate(result)) if certified else report
+
+    def overrun(self, window: int | None) -> Report:
+        """Return that nothing is known: the time went into compiling, which the library cannot stop."""
+        from robustness.results import Verdict
+        from robustness.time_varying import JointResult
+
+        reason = "the time limit was reached"
+        result = JointResult(Verdict.UNDECIDED, self.r, self.s, asked_window=window, tau=self.tau, reason=reason)
+        return Report(self.sequence, result, None, result)
+
+    def _decide(self, window: int | None, all_windows: bool) -> JointResult:
+        from robustness.time_varying import check_joint_robustness
+
+        return check_joint_robustness(
+            self.sequence,
+            self.r,
+            self.s,
+            window=window,
+            tau=self.tau,
+            all_windows=all_windows,
+            time_limit=self.clock.left(),
+            **self.options,
+        )
+
+    def _curve(self) -> Mapping[int, int | None] | None:
+        """Return the smallest window for every r, or None when the limit stopped it: a part would be a guess."""
+        from robustness.errors import Undecided
+        from robustness.time_varying import joint_curve
+
+        try:
+            return joint_curve(self.sequence, self.s, time_limit=self.clock.left(), **self.options)
+        except Undecided:
+            return None
+
+    def _certificate(self, result: JointResult) -> bytes | None:
+        from robustness.time_varying.certification import joint_certificate
+
+        effort = {name: value for name, value in self.options.items() if name != "algorithm"}
+        return joint_certificate(self.sequence, result, time_limit=self.clock.left(), **effort)
+
+
+def _write(report: Report, certificate: Path | None, canonical: Path | None) -> dict[str, str]:
+    """Write the files asked for, as far as there is something to write; return their names."""
+    from robustness.files import replace_file
+    from robustness.time_varying.certification import canonical_sequence
+
+    written: dict[str, str] = {}
+    if canonical is not None:
+        replace_file(canonical, canonical_sequence(report.sequence))
+        written["canonical"] = str(canonical)
+    if certificate is not None and report.certificate is not None:
+        replace_file(certificate, report.certificate)
+        written["certificate"] = str(certificate)
+    return written
+
+
+def _violation_document(found: Violation | None) -> dict[str, Any] | None:
+    if found is None:
+        return None
+    pair = found.witness
+    witness = None if pair is None else {"S1": set_document(pair.S1), "S2": set_document(pair.S2)}
+    return {"start": found.start, "length": found.length, "witness": witness}
+
+
+def _lines(report: Report, source: str, *, whole: bool) -> Iterator[str]:
+    sequence, result = report.sequence, report.result
+    yield _headline(result)
+    if result.violation is not None:
+        yield from _violation_lines("violating window", result.violation, whole)
+    if result.shorter_fails is not None:
+        yield from _violation_lines("one step shorter fails", result.shorter_fails, whole)
+    if result.within_tau is not None:
+        yield f"tau        {_tau_text(result)}"
+    yield f"sequence   {source}: {sequence.n} nodes, {_steps_text(sequence)}"
+    if result.stats:
+        rules = ", ".join(f"{n} {rule}" for rule, n in result.stats.items() if rule not in ("windows", "searches"))
+        yield f"windows    {result.stats['windows']} settled by {rules or 'none'}; {result.stats['searches']} searches"
+    if report.curve is not None:
+        yield from _curve_table(report.curve)
+    yield f"time       {result.seconds:.3f} s"
+
+
+def _headline(result: JointResult) -> str:
+    name = f"jointly {result.r}-robust" if result.s == 1 else f"jointly ({result.r},{result.s})-robust"
+    why = f": {result.reason}" if result.reason else ""
+    match result.verdict.value:
+        case "robust":
+            verdict = click.style("robust:", fg="green", bold=True)
+            smallest = "" if result.asked_window else "; no smaller number will do"
+            return f"{verdict} the network is {name} over every {_count(result.window or 0)}{smallest}"
+        case "not-robust":
+            verdict = click.style("not robust:", fg="red", bold=True)
+            over = f" over every {_count(result.asked_window)}" if result.asked_window else ""
+            return f"{verdict} the network is not {name}{over}{why}"
+        case _:
+            verdict = click.style("undecided:", fg="yellow", bold=True)
+            known = f"; fewer than {_count(result.at_least)} will not do" if result.at_least > 1 else ""
+            return f"{verdict} whether the network is {name} is not known ({result.reason}){known}"
+
+
+def _violation_lines(title: str, found: Violation, whole: bool) -> Iterator[str]:
+    last = found.start + found.length - 1
+    yield f"{title}: " + (f"step {last}" if found.length == 1 else f"steps {found.start} to {last}")
+    if found.witness is not None:
+        yield f"  S1 = {set_text(found.witness.S1, whole=whole)}"
+        yield f"  S2 = {set_text(found.witness.S2, whole=whole)}"
+
+
+def _tau_text(result: JointResult) -> str:
+    if result.within_tau:
+        return f"{result.window} <= {result.tau}: the window is within the delay bound"
+    if result.window is None:
+        return "no window, so none within the delay bound"
+    return f"{result.window} > {result.tau}: the window is longer than the delay bound"
+
+
+def _steps_text(sequence: TimeVaryingGraph) -> str:
+    if sequence.period is None:
+        return f"a finite trace of {_count(len(sequence))}: its windows do not wrap"
+    before = f"{_count(sequence.prefix)}, then " if sequence.prefix else ""
+    return f"{before}a period of {_count(sequence.period)}: its windows wrap"
+
+
+def _count(steps: int) -> str:
+    return f"{steps} step" if steps == 1 else f"{steps} steps"
+
+
+def _curve_table(curve: Mapping[int, int | None]) -> Iterator[str]:
+    cells = [(str(r), "none" if window is None else str(window)) for r, window in curve.items()]
+    width = max((len(cell) for pair in cells for cell in pair), default=1)
+    for name, row in zip(("r", "smallest L"), zip(*cells, strict=True), strict=False):
+        yield f"{name:<11}" + " ".join(f"{cell:>{width}}" for cell in row)

@@ -1,0 +1,120 @@
+"""The group ``robustness``: finds commands when they are called for, and turns every exception into an exit code."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import os
+import warnings
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import click
+
+from cli.exit_codes import ExitCode
+from cli.interruption import end_process
+from cli.options import talk_options
+from cli.output import Console, pass_console
+
+__all__ = ["COMMANDS", "main", "robustness"]
+
+#: Every command and where it lives. A module is imported when its command is called or listed, not before.
+COMMANDS: Mapping[str, str] = MappingProxyType(
+    {
+        "check": "cli.check:command",
+        "certify": "cli.certify:command",
+        "verify": "cli.verify:command",
+        "joint": "cli.joint:command",
+        "tolerance": "cli.tolerance:command",
+        "build": "cli.build:command",
+        "find": "cli.find:command",
+        "simulate": "cli.simulate:command",
+        "attack": "cli.attack:command",
+    }
+)
+
+
+class CommandTable(click.Group):
+    """A group that looks commands up in :data:`COMMANDS` and ends every one of them in an :class:`ExitCode`."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the commands whose modules are there, in the order of the table."""
+        return [name for name, place in COMMANDS.items() if importlib.util.find_spec(place.partition(":")[0])]
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import and return one command."""
+        if cmd_name not in self.list_commands(ctx):
+            return None
+        module, _, attribute = COMMANDS[cmd_name].partition(":")
+        command: click.Command = getattr(importlib.import_module(module), attribute)
+        return command
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command; whatever it raises ends in one line on standard error and an exit code."""
+        console = ctx.ensure_object(Console)
+        with warnings.catch_warnings():
+            warnings.showwarning = lambda message, *_, **__: console.warn(str(message))
+            warnings.simplefilter("once", UserWarning)  # the base of GraphWarning, whose import is not needed here
+            try:
+                return super().invoke(ctx)
+            except (click.ClickException, click.exceptions.Exit, click.Abort):
+                raise
+            except (Exception, KeyboardInterrupt) as problem:  # noqa: BLE001 - the one place that maps them all
+                ctx.exit(_report(console, problem))
+
+
+def _report(console: Console, problem: BaseException) -> ExitCode:
+    """Say what went wrong in one line, with a traceback where -v asks for it, and return the exit code."""
+    code = ExitCode.of_exception(problem)
+    if console.is_verbose:
+        import traceback
+
+        console.error("".join(traceback.format_exception(problem)).rstrip())
+    match code:
+        case ExitCode.INTERRUPTED:
+            console.error("interrupted: nothing is claimed")
+        case ExitCode.INTERNAL_ERROR:
+            hint = "" if console.is_verbose else "; -v shows where"
+            console.error(f"internal error, not a verdict: {type(problem).__name__}: {problem}{hint}")
+        case _ if isinstance(problem, OSError) and problem.filename is not None:
+            console.error(f"error: cannot write {os.fsdecode(problem.filename)}: {problem.strerror}")
+        case _:
+            console.error(f"error: {problem}")
+    return code
+
+
+def _print_version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
+    if wanted and not ctx.resilient_parsing:
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            number = version("graph-robustness")
+        except PackageNotFoundError:  # run from the sources
+            number = "(not installed)"
+        click.echo(f"robustness {number}")
+        ctx.exit(ExitCode.DONE)
+
+
+@click.group(cls=CommandTable, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.option("--version", is_flag=True, is_eager=True, expose_value=False, callback=_print_version, help="Show it.")
+@talk_options
+@pass_console
+def robustness(console: Console) -> None:
+    """How many malicious nodes can resilient consensus survive on this network?
+
+    GRAPH is a file (.json node-link, .graphml, .gml, .gexf, .edgelist, .txt, .csv or .npy adjacency matrix,
+    .g6, .s6, .d6), - for node-link JSON on standard input, or a name such as topohub:topozoo/Abilene.
+
+    \b
+    Exit codes: 0 proven or done   10 refuted     30 undecided   2 usage
+                3 bad input        1 a bug, never a verdict      130 interrupted
+    """
+
+
+def main() -> None:
+    """Run the command line; the entry point of the distribution."""
+    try:
+        robustness(prog_name="robustness")
+    except SystemExit as end:
+        end_process(end.code if isinstance(end.code, int) else ExitCode.DONE)

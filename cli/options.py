@@ -1,0 +1,124 @@
+"""Options and arguments that several commands share, each a decorator, so that they mean the same everywhere."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from cli.output import Console
+
+if TYPE_CHECKING:
+    from robustness.digraph import Digraph
+
+__all__ = [
+    "ALGORITHM_NAMES",
+    "algorithm_option",
+    "graph_argument",
+    "jobs_option",
+    "json_option",
+    "load_graph",
+    "seed_option",
+    "talk_options",
+    "timeout_option",
+]
+
+_Command = TypeVar("_Command", bound=Callable[..., Any])
+
+#: ``auto`` and the names in ``robustness.ALGORITHMS``; written out so that --help need not import the library.
+ALGORITHM_NAMES = ("auto", "exhaustive", "transform", "subset-search", "milp", "cp-sat")
+
+
+class Seconds(click.ParamType):  # type: ignore[type-arg]  # generic only from click 8.4 on
+    """A positive, finite number of seconds."""
+
+    name = "seconds"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Return ``value`` as a number; NaN, infinity and everything up to zero are refused."""
+        try:
+            seconds = float(value)
+        except ValueError:
+            seconds = math.nan
+        if not (math.isfinite(seconds) and seconds > 0):
+            self.fail(f"{value!r} is not a positive, finite number of seconds.", param, ctx)
+        return seconds
+
+
+graph_argument = click.argument("source", metavar="GRAPH")
+
+json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON document with a schema key.")
+
+timeout_option = click.option(
+    "--timeout", type=Seconds(), metavar="SECONDS", help="Stop after this time; what is not decided is undecided."
+)
+
+jobs_option = click.option(
+    "--jobs", type=click.IntRange(min=1), default=1, show_default=True, metavar="N", help="Threads."
+)
+
+seed_option = click.option(
+    "--seed",
+    type=click.IntRange(min=0, max=2**63 - 1),
+    default=0,
+    show_default=True,
+    metavar="N",
+    help="Of every random choice; it never changes a verdict.",
+)
+
+algorithm_option = click.option(
+    "--algorithm",
+    type=click.Choice(ALGORITHM_NAMES),
+    default="auto",
+    show_default=True,
+    help="The exact algorithm; all give the same verdict.",
+)
+
+
+def load_graph(source: str) -> Digraph:
+    """Return the graph that GRAPH means; see :func:`robustness.files.read_topology`."""
+    from robustness.files import read_topology
+
+    return read_topology(source)
+
+
+def _set_color(ctx: click.Context, _: click.Parameter, when: str | None) -> None:
+    if when is None and ctx.parent is not None:
+        return  # the group has settled it
+    automatic = False if os.environ.get("NO_COLOR") else None
+    color = {"always": True, "never": False}.get(when or "auto", automatic)
+    for each in (ctx, ctx.find_root()):
+        each.color = color
+
+
+def _set_verbose(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
+    if wanted:
+        ctx.ensure_object(Console).is_verbose = True
+
+
+def _set_quiet(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
+    if wanted:
+        ctx.ensure_object(Console).is_quiet = True
+
+
+_quiet_option = click.option(
+    "-q", "--quiet", is_flag=True, expose_value=False, callback=_set_quiet, help="Only results and errors."
+)
+_verbose_option = click.option(
+    "-v", "--verbose", is_flag=True, expose_value=False, callback=_set_verbose, help="Say more, in full."
+)
+_color_option = click.option(
+    "--color",
+    type=click.Choice(["auto", "always", "never"]),
+    expose_value=False,
+    callback=_set_color,
+    help="Colour; auto means on a terminal, unless NO_COLOR is set.",
+)
+
+
+def talk_options(command: _Command) -> _Command:
+    """Add -q, -v and --color, which may stand before or after the command's name."""
+    return _quiet_option(_verbose_option(_color_option(command)))

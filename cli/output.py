@@ -1,0 +1,137 @@
+"""What the user sees: results on standard output, talk and progress on standard error, colour where it is wanted."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import sys
+import time
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, TextIO
+
+import click
+
+if TYPE_CHECKING:
+    from certificates.graph import Label
+    from robustness.algorithms import Progress
+    from robustness.digraph import Digraph
+    from robustness.results import Bounds
+
+__all__ = ["Console", "ProgressLine", "graph_document", "pass_console", "set_document", "set_text"]
+
+#: A set of more labels than this is cut in text; --json and -v print it whole.
+_LABELS_SHOWN = 60
+
+
+@dataclass(slots=True)
+class Console:
+    """The two streams and how much goes to them. Colour is settled by click's context."""
+
+    is_verbose: bool = False
+    is_quiet: bool = False
+
+    def result(self, text: str) -> None:
+        """Print a result."""
+        _write(text, to_error=False)
+
+    def document(self, schema: str, content: Mapping[str, Any]) -> None:
+        """Print a result as one JSON document whose first key is ``schema``."""
+        _write(json.dumps({"schema": schema, **content}, allow_nan=False), to_error=False)
+
+    def talk(self, text: str) -> None:
+        """Say something that is no result; -q silences it."""
+        if not self.is_quiet:
+            _write(text, to_error=True)
+
+    def warn(self, text: str) -> None:
+        """Say what the user should know about the input; -q silences it."""
+        self.talk(f"{click.style('warning:', fg='yellow')} {text}")
+
+    def error(self, text: str) -> None:
+        """Say why the command ends."""
+        kind, colon, rest = text.partition(":")
+        _write(click.style(kind + colon, fg="red") + rest if colon else text, to_error=True)
+
+
+pass_console = click.make_pass_decorator(Console, ensure=True)
+
+
+class ProgressLine:
+    """One line on a terminal's standard error that is redrawn while a search runs, and wiped when it ends.
+
+    Pass the instance as ``progress`` and :attr:`note_bounds` as ``on_bounds``; ``bounds`` holds the latest.
+    """
+
+    def __init__(self, console: Console) -> None:
+        self.bounds: Bounds | None = None
+        is_terminal = sys.stderr is not None and sys.stderr.isatty()  # None when it is closed
+        self._shown = is_terminal and not console.is_quiet and os.environ.get("TERM") != "dumb"
+        self._started = self._drawn = time.monotonic()
+        self._text = ""
+        self._parts: tuple[str, ...] = ("starting (the first time, the search is compiled)",)
+
+    def __enter__(self) -> ProgressLine:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, tb: TracebackType | None) -> None:
+        if self._shown and self._text:
+            _write("\r\x1b[K", to_error=True, end="")
+        self._shown = False  # interrupted work may go on in the background
+
+    def __call__(self, progress: Progress) -> None:
+        """Show how far the search is."""
+        self._parts = (f"{progress.nodes:,} nodes visited", progress.note)
+        self.tick()
+
+    def note_bounds(self, bounds: Bounds) -> None:
+        """Remember the latest proven bounds, for the line and for a report after Ctrl-C."""
+        self.bounds = bounds
+
+    def tick(self) -> None:
+        """Redraw the line with the present time, ten times a second at most."""
+        now = time.monotonic()
+        if not self._shown or now - self._drawn < 0.1:
+            return
+        self._drawn = now
+        known = f"{self.bounds.lower.value} <= r* <= {self.bounds.upper.value}" if self.bounds else ""
+        text = ", ".join(part for part in (f"{now - self._started:.0f} s", known, *self._parts) if part)
+        self._text = text[: shutil.get_terminal_size().columns - 1]
+        _write(f"\r\x1b[K{self._text}", to_error=True, end="")
+
+
+def graph_document(graph: Digraph) -> dict[str, Any]:
+    """Return what every JSON document says about the graph; an undirected edge is two arcs."""
+    return {"nodes": graph.n, "arcs": graph.arc_count, "directed": graph.directed, "sha256": graph.sha256}
+
+
+def set_document(labels: Iterable[Label]) -> list[Label]:
+    """Return a set of labels for JSON: in canonical order, tuples as lists."""
+    from certificates.graph import label_key
+
+    return sorted(labels, key=label_key)
+
+
+def set_text(labels: Iterable[Label], *, whole: bool = False) -> str:
+    """Return a set of labels as text, in canonical order; a long one is cut unless ``whole``."""
+    ordered = set_document(labels)
+    shown = ordered if whole else ordered[:_LABELS_SHOWN]
+    more = f", … {len(ordered) - len(shown)} more" if len(shown) < len(ordered) else ""
+    return "{" + ", ".join(map(repr, shown)) + more + "}"
+
+
+def _write(text: str, *, to_error: bool, end: str = "\n") -> None:
+    """Write and flush. A reader that has gone away is not an error: the exit code still tells the verdict."""
+    try:
+        click.echo(text + end, err=to_error, nl=False)
+    except BrokenPipeError:
+        _discard(sys.stderr if to_error else sys.stdout)
+
+
+def _discard(stream: TextIO) -> None:
+    """Point ``stream`` at the null device, so that Python's flush at exit does not fail again."""
+    null = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null, stream.fileno())
+    os.close(null)

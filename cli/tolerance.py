@@ -1,0 +1,280 @@
+"""``robustness tolerance``: what f a network survives under each threat model, with evidence or an attack."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from cli.exit_codes import ExitCode
+from cli.interruption import Overrun, interruptibly
+from cli.options import graph_argument, jobs_option, json_option, load_graph, seed_option, talk_options, timeout_option
+from cli.output import Console, ProgressLine, graph_document, pass_console, set_text
+
+if TYPE_CHECKING:
+    from robustness.digraph import Digraph
+    from robustness.threat_models import ToleranceResult, ToleranceTable
+    from robustness.time_varying import TimeVaryingGraph
+
+__all__ = ["MODELS", "SCHEMA", "command"]
+
+SCHEMA = "robustness/tolerance/1"
+
+#: The names in ``robustness.threat_models.THREAT_MODELS``; written out so that --help need not import the library.
+MODELS = ("malicious", "malicious-local", "byzantine", "delayed", "delayed-local")
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """What the command found."""
+
+    graph: Digraph
+    table: ToleranceTable
+    confirmed: dict[str, bool | None]
+    required: int | None
+    seconds: float
+
+    def verdict(self) -> str | None:
+        """Return what is known about the required f in the worst of the models, or None when none was required."""
+        if self.required is None:
+            return None
+        standings = {result.standing(self.required).value for result in self.table.results}
+        return next(each for each in ("refuted", "undecided", "open", "guaranteed") if each in standings)
+
+    def exit_code(self) -> ExitCode:
+        """Return 0, 10 or 30: with --require about that f, else about whether a limit left something undecided."""
+        match self.verdict():
+            case None:
+                return ExitCode.DONE if self.table.is_decided else ExitCode.UNDECIDED
+            case "guaranteed":
+                return ExitCode.DONE
+            case "refuted":
+                return ExitCode.REFUTED
+            case _:
+                return ExitCode.UNDECIDED
+
+    def document(self) -> dict[str, Any]:
+        """Return the content of the schema ``robustness/tolerance/1``."""
+        models = [result.as_dict() | {"confirmed": self.confirmed[result.model]} for result in self.table.results]
+        return {
+            "graph": graph_document(self.graph),
+            "summary": self.table.summary(),
+            "models": models,
+            "require": None if self.required is None else {"f": self.required, "verdict": self.verdict()},
+            "seconds": round(self.seconds, 6),
+        }
+
+
+@click.command("tolerance")
+@graph_argument
+@click.option("--model", type=click.Choice(MODELS), help="One threat model instead of all.")
+@click.option("--require", "required", type=click.IntRange(min=0), metavar="F", help="A gate: is F survived?")
+@click.option(
+    "--tau",
+    type=click.IntRange(min=1),
+    metavar="T",
+    help="GRAPH is a sequence as for 'joint'; delays, and values of links that have gone, are at most T steps old.",
+)
+@click.option("--period", type=click.IntRange(min=1), metavar="P", help="With --tau: the last P steps repeat for ever.")
+@click.option(
+    "-o", "--output", type=click.Path(file_okay=False, path_type=Path), metavar="DIR", help="Write certificates there."
+)
+@json_option
+@timeout_option
+@jobs_option
+@seed_option
+@talk_options
+@pass_console
+@click.pass_context
+def command(
+    ctx: click.Context,
+    console: Console,
+    source: str,
+    model: str | None,
+    required: int | None,
+    tau: int | None,
+    period: int | None,
+    output: Path | None,
+    as_json: bool,
+    timeout: float | None,
+    jobs: int,
+    seed: int,
+) -> None:
+    """What does GRAPH survive? For each threat model the largest f guaranteed and the smallest refuted.
+
+    \b
+    malicious        updates in step, at most f liars in all, who tell everybody the same
+    malicious-local  the same, up to f liars around every vehicle
+    byzantine        the same as malicious, but each neighbour may be told another lie
+    delayed          delays and partly asynchronous updates, at most f liars in all
+    delayed-local    the same, up to f liars around every vehicle
+
+    What lies between guaranteed and refuted is open in theory, and said to be. Every attack is carried out by the
+    simulator first. With --require F: exit code 0 when F is guaranteed (under every model shown), 10 when an
+    attack refutes it, 30 when neither is known. Without: 0, or 30 when a limit left something undecided.
+
+    With -o, DIR/graph.json is the canonical graph, DIR/MODEL-guaranteed-F.cert and DIR/MODEL-refuted-F.cert are
+    certificates, and DIR/MODEL-attack.json is what 'simulate --attack' reads.
+    """
+    if tau is None and period is not None:
+        raise click.UsageError("--period belongs to a sequence: give --tau as well.")
+    if tau is not None and model not in (None, "delayed", "delayed-local"):
+        raise click.UsageError(f"theory says nothing about {model} over time: with --tau, delayed or delayed-local.")
+    network, graph = _load(source, tau, period)
+    started = time.perf_counter()
+    with ProgressLine(console) as line:
+
+        def work() -> Report:
+            return _examine(network, graph, model, tau, required, timeout, jobs, seed, line)
+
+        try:
+            report = interruptibly(work, timeout, line.tick)
+        except Overrun:
+            report = _nothing(graph, model, required, time.perf_counter() - started)
+    if output is not None:
+        _write_evidence(console, report, output, timeout, jobs, seed)
+    if as_json:
+        console.document(SCHEMA, report.document())
+    else:
+        console.result("\n".join(_lines(report, source, whole=console.is_verbose)))
+    ctx.exit(report.exit_code())
+
+
+def _load(source: str, tau: int | None, period: int | None) -> tuple[Digraph | TimeVaryingGraph, Digraph]:
+    """Return the network, and the graph to show: of a sequence the union of its steps."""
+    if tau is None:
+        graph = load_graph(source)
+        return graph, graph
+    from robustness.time_varying import read_sequence
+
+    sequence = read_sequence(source, period=period)
+    return sequence, sequence.union(0, len(sequence))
+
+
+def _examine(
+    network: Digraph | TimeVaryingGraph,
+    graph: Digraph,
+    model: str | None,
+    tau: int | None,
+    required: int | None,
+    timeout: float | None,
+    jobs: int,
+    seed: int,
+    line: ProgressLine,
+) -> Report:
+    from robustness.errors import InternalError
+    from robustness.threat_models import tolerance
+    from robustness.threat_models.confirming import confirm
+    from robustness.threat_models.results import ToleranceTable
+
+    started = time.perf_counter()
+    found = tolerance(network, model, tau=tau, time_limit=timeout, jobs=jobs, seed=seed, progress=line)
+    table = found if isinstance(found, ToleranceTable) else ToleranceTable(graph, (found,))
+    confirmed = {result.model: confirm(result) for result in table.results}
+    if False in confirmed.values():
+        raise InternalError(f"an attack from checked evidence did not split the network ({confirmed}): please report")
+    return Report(graph, table, confirmed, required, time.perf_counter() - started)
+
+
+def _write_evidence(
+    console: Console, report: Report, folder: Path, timeout: float | None, jobs: int, seed: int
+) -> None:
+    """Write the canonical graph, and for each model its certificates and its attack."""
+    from robustness.files import replace_file
+    from robustness.threat_models import ToleranceCertificates, certify_tolerance
+
+    folder.mkdir(parents=True, exist_ok=True)
+    replace_file(folder / "graph.json", report.graph.canonical_bytes())
+    for result in report.table.results:
+
+        def work(result: ToleranceResult = result) -> ToleranceCertificates:
+            return certify_tolerance(result, time_limit=timeout, jobs=jobs, seed=seed)
+
+        try:
+            found = interruptibly(work, timeout)
+        except Overrun:
+            found = ToleranceCertificates(None, None)
+        claims = (("guaranteed", result.guaranteed, found.guaranteed), ("refuted", result.refuted, found.refuted))
+        for what, f, data in claims:
+            if data is not None:
+                path = folder / f"{result.model}-{what}-{f}.cert"
+                replace_file(path, data)
+                console.talk(f"wrote {path} ({len(data):,} bytes, verified)")
+            elif f is not None and f >= 0 and result.over_time:
+                console.talk(f"no certificate of {result.model}, f = {f} {what}: 'joint' writes them for sequences")
+            elif f is not None and f >= 0:
+                console.talk(f"no certificate of {result.model}, f = {f} {what}: too large, or a limit was reached")
+        # A local violation has malicious nodes of its own, for which an attack file has no place yet.
+        if result.attack is not None and result.model != "malicious-local":
+            text = json.dumps(result.attack.as_dict(), indent=1) + "\n"
+            replace_file(folder / f"{result.model}-attack.json", text.encode())
+
+
+def _nothing(graph: Digraph, model: str | None, required: int | None, seconds: float) -> Report:
+    """Return the report of work that did not keep its time limit: nothing is claimed."""
+    from robustness.threat_models.models import THREAT_MODELS
+    from robustness.threat_models.results import Reason, Standing, ToleranceResult, ToleranceTable
+
+    reason = Reason(Standing.UNDECIDED, 0, "nothing was decided", "none: the time limit was reached", "none")
+    names = MODELS if model is None else (model,)
+    results = tuple(ToleranceResult(graph, THREAT_MODELS[name], -1, None, (reason,)) for name in names)
+    return Report(graph, ToleranceTable(graph, results), dict.fromkeys(names), required, seconds)
+
+
+def _lines(report: Report, source: str, *, whole: bool) -> Iterator[str]:
+    graph, table = report.graph, report.table
+    if report.required is not None:
+        yield _gate(report)
+    yield table.summary()
+    yield ""
+    yield from _table(table)
+    for result in table.results:
+        yield ""
+        yield from _evidence(result, report.confirmed[result.model], whole)
+    kind = "directed" if graph.directed else "undirected"
+    yield ""
+    yield f"graph      {source}: {graph.n} nodes, {graph.arc_count} arcs, {kind}"
+    yield f"time       {report.seconds:.3f} s"
+
+
+def _gate(report: Report) -> str:
+    verdict = report.verdict() or ""
+    color = {"guaranteed": "green", "refuted": "red"}.get(verdict, "yellow")
+    models = ", ".join(report.table)
+    what = {
+        "guaranteed": "agreement is guaranteed",
+        "refuted": "an attack splits the network",
+        "open": "the theorem promises nothing and no attack of the kind exists: open in theory",
+        "undecided": "a limit was reached",
+    }[verdict]
+    return f"{click.style(verdict + ':', fg=color, bold=True)} f = {report.required} under {models}: {what}"
+
+
+def _table(table: ToleranceTable) -> Iterator[str]:
+    from robustness.threat_models.wording import number
+
+    yield f"{'model':<17}{'guaranteed':>10}{'refuted':>9}  between"
+    for result in table.results:
+        between = ", ".join(f"{f} {result.standing(f).value}" for f in result.between) or "-"
+        if result.refuted is None and result.graph.n >= 2:
+            between = "undecided"
+        yield f"{result.model:<17}{number(result.guaranteed):>10}{number(result.refuted):>9}  {between}"
+
+
+def _evidence(result: ToleranceResult, confirmed: bool | None, whole: bool) -> Iterator[str]:
+    yield f"{result.model}: {result.threat.setting}"
+    for reason in result.reasons:
+        yield f"  f = {reason.f:<3} {reason.standing.value}: {reason.statement}"
+        yield f"          theorem   {reason.theorem}"
+        yield f"          evidence  {reason.evidence}"
+        sets = result.attack_sets
+        if reason.standing.value == "refuted" and sets is not None:
+            for name, labels in (("M", sets.M), ("S1", sets.S1), ("S2", sets.S2)):
+                yield f"          {name:<9} {set_text(labels, whole=whole)}"
+            if confirmed:
+                yield "          simulated an exact split under every rule the attack is made for"
