@@ -1,0 +1,213 @@
+"""Every exit code, and every way into it."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import networkx as nx
+import pytest
+from click.testing import CliRunner
+
+import certificates
+from cli.exit_codes import ExitCode
+from cli.main import robustness
+from robustness import errors
+from robustness.files import write_topology
+
+ROOT = Path(__file__).parents[2]
+SQUARE = str(ROOT / "tests" / "data" / "square.json")
+
+
+def start(*arguments: str, **options: object) -> subprocess.Popen[bytes]:
+    """Start the command line; Ctrl-C reaches it even where the tests run in the background, which ignores it."""
+    heard = {"preexec_fn": lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)}
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **heard, **options}
+    return subprocess.Popen([sys.executable, "-m", "cli", *arguments], cwd=ROOT, **pipes)
+
+
+@pytest.fixture
+def hard(tmp_path: Path) -> str:
+    """A graph that no algorithm settles in the time a test takes."""
+    path = tmp_path / "hard.json"
+    write_topology(nx.gnp_random_graph(60, 0.5, seed=1), path)
+    return str(path)
+
+
+def test_the_table_is_the_contract() -> None:
+    assert {code.name: int(code) for code in ExitCode} == {
+        "DONE": 0,
+        "INTERNAL_ERROR": 1,
+        "USAGE": 2,
+        "BAD_INPUT": 3,
+        "REFUTED": 10,
+        "UNDECIDED": 30,
+        "INTERRUPTED": 130,
+    }
+
+
+def test_only_known_verdicts_have_a_code() -> None:
+    codes = {word: int(ExitCode.of_verdict(word)) for word in ("robust", "determined", "not-robust", "undecided")}
+    assert codes == {"robust": 0, "determined": 0, "not-robust": 10, "undecided": 30}
+    with pytest.raises(KeyError):
+        ExitCode.of_verdict("safe")
+
+
+@pytest.mark.parametrize(
+    ("problem", "code"),
+    [
+        (errors.InvalidGraph("x"), 3),
+        (errors.InvalidParameter("x"), 2),
+        (errors.UnreadableTopology("x"), 3),
+        (errors.MissingExtra("x"), 2),
+        (errors.Undecided("x"), 30),
+        (errors.InternalError("x"), 1),
+        (certificates.RejectedCertificate("x"), 10),
+        (certificates.MalformedCertificate("x"), 3),
+        (certificates.MalformedGraph("x"), 3),
+        (certificates.Misuse("x"), 1),
+        (KeyboardInterrupt(), 130),
+        (PermissionError(13, "Permission denied", "out.json"), 2),
+        (OSError(5, "Input/output error"), 1),
+        (TimeoutError("of somebody else"), 1),
+        (MemoryError(), 1),
+        (ZeroDivisionError("x"), 1),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_exceptions_end_in_one_line_and_their_code(
+    problem: BaseException, code: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(_: str) -> None:
+        raise problem
+
+    monkeypatch.setattr("cli.check.load_graph", fail)
+    quiet = CliRunner().invoke(robustness, ["check", SQUARE])
+    assert quiet.exit_code == code == ExitCode.of_exception(problem)
+    assert quiet.stdout == ""
+    assert quiet.stderr.count("\n") == 1
+    assert "Traceback" not in quiet.stderr
+    told = CliRunner().invoke(robustness, ["check", SQUARE, "-v"])
+    assert told.exit_code == code
+    assert "Traceback (most recent call last)" in told.stderr
+
+
+def test_every_error_class_is_covered_above() -> None:
+    ours = {errors.RobustnessError, *errors.RobustnessError.__subclasses__()}
+    assert {getattr(errors, name) for name in errors.__all__} == ours
+
+
+def test_done() -> None:
+    assert CliRunner().invoke(robustness, ["check", SQUARE]).exit_code == 0
+    assert CliRunner().invoke(robustness, ["check", SQUARE, "-r", "1"]).exit_code == 0
+
+
+def test_refuted() -> None:
+    assert CliRunner().invoke(robustness, ["check", SQUARE, "-r", "2"]).exit_code == 10
+
+
+def test_undecided(hard: str) -> None:
+    for question in ([], ["-r", "14"]):
+        arguments = ["check", hard, "--algorithm", "exhaustive", "--timeout", "0.01", "--json", *question]
+        outcome = CliRunner().invoke(robustness, arguments)
+        assert outcome.exit_code == 30
+        assert json.loads(outcome.stdout)["verdict"] == "undecided"
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["no-such-command"],
+        ["check"],
+        ["check", SQUARE, SQUARE],
+        ["check", SQUARE, "--no-such-option"],
+        ["check", SQUARE, "-s", "1"],
+        ["check", SQUARE, "-r", "-1"],
+        ["check", SQUARE, "-r", "1.5"],
+        ["check", SQUARE, "-r", "1", "-s", "0"],
+        ["check", SQUARE, "-r", "1", "-s", "5"],
+        ["check", SQUARE, "--algorithm", "guess"],
+        ["check", SQUARE, "--jobs", "0"],
+        ["check", SQUARE, "--seed", "-1"],
+        *(["check", SQUARE, "--timeout", value] for value in ("0", "-1", "nan", "inf", "soon")),
+        ["--color", "blue", "check", SQUARE],
+    ],
+    ids=" ".join,
+)
+def test_usage(arguments: list[str]) -> None:
+    outcome = CliRunner().invoke(robustness, arguments)
+    assert outcome.exit_code == 2
+    assert outcome.stdout == ""
+    assert outcome.stderr
+
+
+@pytest.mark.parametrize("name", ["gone.json", "gone.xyz", "topohub:topozoo/Gone", str(ROOT)])
+def test_bad_input(name: str) -> None:
+    outcome = CliRunner().invoke(robustness, ["check", name])
+    assert outcome.exit_code == 3
+    assert outcome.stderr.startswith(f"error: {name}: ")
+    assert outcome.stderr.count("\n") == 1
+
+
+def test_an_internal_error_says_that_it_is_no_verdict(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("robustness.checking.determine_robustness", lambda *_, **__: 1 / 0)
+    outcome = CliRunner().invoke(robustness, ["check", SQUARE])
+    assert outcome.exit_code == 1
+    assert outcome.stderr.startswith("internal error, not a verdict: ZeroDivisionError")
+
+
+def test_a_contradiction_between_profile_and_r_is_an_internal_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    for profile in ({1: 3, 2: 0}, {1: 4, 2: 1}):
+        monkeypatch.setattr("robustness.checking.robustness_profile", lambda *_, table=profile, **__: table)
+        outcome = CliRunner().invoke(robustness, ["check", SQUARE])
+        assert outcome.exit_code == 1
+        assert "contradicts" in outcome.stderr
+
+
+@pytest.mark.parametrize("question", [[], ["-r", "14"]], ids=["determine", "decide"])
+def test_ctrl_c_prints_the_bounds_and_ends_soon(hard: str, question: list[str]) -> None:
+    with start("check", hard, "--json", "--algorithm", "exhaustive", *question) as process:
+        time.sleep(2)
+        asked = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=20)
+        assert time.monotonic() - asked < 5  # well under a second on a machine that does nothing else
+    assert process.returncode == 130
+    document = json.loads(out)
+    assert document["verdict"] == "undecided"
+    assert 0 <= document["bounds"]["lower"] <= document["bounds"]["upper"] <= 30
+    assert err.decode().startswith("interrupted:")
+    assert b"Traceback" not in err
+
+
+def test_a_reader_that_goes_away_changes_no_code() -> None:
+    for question, code in ([], 0), (["-r", "2"], 10):
+        with start("check", SQUARE, *question) as process:
+            assert process.stdout is not None
+            process.stdout.close()
+            assert process.stderr is not None
+            assert process.stderr.read() == b""
+        assert process.returncode == code
+
+
+def test_a_result_that_cannot_be_written_is_no_success() -> None:
+    with open(os.devnull, "rb") as unwritable, start("check", SQUARE, stdout=unwritable) as process:
+        _, err = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert b"Bad file descriptor" in err
+    assert b"Traceback" not in err
+
+
+@pytest.mark.parametrize("closed", [0, 1, 2])
+def test_a_closed_stream_is_no_crash(closed: int) -> None:
+    with start("check", SQUARE, preexec_fn=lambda: os.close(closed)) as process:
+        out, err = process.communicate(timeout=60)
+    assert process.returncode == 0
+    assert err == b""
+    assert out.startswith(b"determined:") == (closed != 1)

@@ -1,0 +1,120 @@
+"""Work that can be stopped whatever it does, and a process that ends although the work does not."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from cli import interruption
+from cli.interruption import Overrun, end_process, interruptibly
+from cli.main import robustness
+
+ROOT = Path(__file__).parents[2]
+SQUARE = str(ROOT / "tests" / "data" / "square.json")
+
+#: Work that swallows every exception, as a compiler's callback does, and then waits in C for ever.
+STUBBORN = """
+import threading, time
+import robustness.checking
+from cli.main import main
+
+def stubborn(*arguments, **options):
+    print("working", file=__import__("sys").stderr, flush=True)
+    while True:
+        try:
+            time.sleep(60)
+        except BaseException:
+            pass
+
+robustness.checking.determine_robustness = stubborn
+main()
+"""
+
+
+def test_results_and_errors_pass_through() -> None:
+    assert interruptibly(lambda: 7) == 7
+    assert interruptibly(lambda: 7, limit=0.0) == 7
+    with pytest.raises(ZeroDivisionError):
+        interruptibly(lambda: 1 // 0)
+    with pytest.raises(KeyboardInterrupt):
+        interruptibly(lambda: (_ for _ in ()).throw(KeyboardInterrupt))
+
+
+def test_the_work_runs_beside_the_main_thread() -> None:
+    assert interruptibly(threading.current_thread) is not threading.current_thread()
+
+
+def test_work_that_does_not_keep_its_limit_is_left_behind(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(interruption, "GRACE", 0.05)
+    release, ticks = threading.Event(), []
+    started = time.monotonic()
+    with pytest.raises(Overrun):
+        interruptibly(lambda: release.wait(60), 0.7, lambda: ticks.append(1))
+    assert 0.7 <= time.monotonic() - started < 30
+    assert ticks == [1]
+    release.set()
+
+
+def test_an_overrun_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(interruption, "GRACE", 0.0)
+    release = threading.Event()
+    for name, question in ("determine_robustness", []), ("check_rs_robustness", ["-r", "2"]):
+        monkeypatch.setattr(f"robustness.checking.{name}", lambda *_, **__: release.wait(60))
+        outcome = CliRunner().invoke(robustness, ["check", SQUARE, "--json", "--timeout", "0.1", *question])
+        assert outcome.exit_code == 30
+        found = json.loads(outcome.stdout)
+        assert (found["verdict"], found["bounds"]["lower"], found["bounds"]["upper"]) == ("undecided", 0, 2)
+    release.set()
+
+
+def test_a_profile_that_overruns_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(interruption, "GRACE", 0.0)
+    release = threading.Event()
+    monkeypatch.setattr("robustness.checking.robustness_profile", lambda *_, **__: release.wait(60))
+    outcome = CliRunner().invoke(robustness, ["check", SQUARE, "--json", "--timeout", "2"])
+    release.set()
+    assert outcome.exit_code == 0
+    found = json.loads(outcome.stdout)
+    assert (found["verdict"], found["r"], found["profile"]) == ("determined", 1, None)
+
+
+def test_ctrl_c_ends_the_process_although_the_work_goes_on() -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-c", STUBBORN, "check", SQUARE, "--json"],
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
+    with process:
+        assert process.stderr is not None
+        assert process.stderr.readline() == b"working\n"
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=20)
+    assert process.returncode == 130
+    assert json.loads(out)["bounds"]["upper"] == 2
+    assert err.startswith(b"interrupted: ")
+
+
+def test_the_process_ends_in_the_code_it_is_given(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(SystemExit) as end:
+        end_process(10)
+    assert end.value.code == 10
+    ends: list[int] = []
+    monkeypatch.setattr(os, "_exit", ends.append)
+    release = threading.Event()
+    with pytest.raises(Overrun):
+        interruptibly(lambda: release.wait(60), -1.0)
+    with pytest.raises(SystemExit):
+        end_process(30)
+    release.set()
+    assert ends == [30]

@@ -1,0 +1,262 @@
+"""``robustness simulate`` and ``robustness attack``: outcomes, exit codes, files."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import networkx as nx
+import pytest
+from click.testing import CliRunner, Result
+
+import robustness as rb
+from cli import simulate as simulate_command
+from cli.exit_codes import ExitCode
+from cli.main import robustness
+from robustness.files import encode_topology
+from robustness.simulation import ADVERSARIES, EXPERIMENTS, RULES, SCHEDULES
+from robustness.simulation.finding import ATTACK_MODELS
+from robustness.simulation.models import FAULT_MODELS
+
+WHEEL, CYCLE, COMPLETE = (
+    encode_topology(graph) for graph in (nx.wheel_graph(5), nx.cycle_graph(6), nx.complete_graph(5))
+)
+
+
+def run(*arguments: str | Path, graph: bytes | None = None) -> Result:
+    return CliRunner().invoke(robustness, [str(argument) for argument in arguments], input=graph)
+
+
+def document(*arguments: str | Path, graph: bytes | None = None) -> dict[str, Any]:
+    done = run(*arguments, "--json", graph=graph)
+    assert done.stdout.count("\n") == 1, done.output
+    return json.loads(done.stdout)
+
+
+def test_the_choices_are_those_of_the_library() -> None:
+    assert sorted(simulate_command._RULES) == sorted(RULES)
+    assert sorted(simulate_command._MODELS) == sorted(FAULT_MODELS)
+    assert sorted(simulate_command._SCHEDULES) == sorted(SCHEDULES)
+    assert sorted(simulate_command._ADVERSARIES) == sorted([*ADVERSARIES, "auto"])
+    assert sorted(simulate_command._EXPERIMENTS) == sorted(EXPERIMENTS)
+    assert simulate_command._MODELS[0] == ATTACK_MODELS[0]
+
+
+class TestSimulate:
+    def test_json_key_by_key(self) -> None:
+        found = document("simulate", "-", "--adversary", "ramp", "--malicious", "0", graph=WHEEL)
+        (only,) = found.pop("runs")
+        assert found == {
+            "schema": "robustness/simulate/1",
+            "graph": {
+                "nodes": 5,
+                "arcs": 16,
+                "directed": False,
+                "sha256": rb.Digraph.from_networkx(nx.wheel_graph(5)).sha256,
+            },
+            "outcome": "agreement",
+            "rule": "adp-msr",
+            "model": "malicious",
+            "f": 1,
+            "adversary": "Ramp(slope=0.05)",
+            "schedule": "Schedule(update_times=EveryStep(), delay_rule=NoDelays(), tau=0)",
+            "tau": 0,
+            "steps": 1000,
+        }
+        assert only["malicious"] == [0]
+        assert only["safe"] is True
+        assert [group["nodes"] for group in only["groups"]] == [[1, 2, 3, 4]]
+
+    @pytest.mark.parametrize(
+        ("graph", "arguments", "outcome"),
+        [
+            (WHEEL, (), "agreement"),
+            (WHEEL, ("--schedule", "delayed"), "split"),
+            (WHEEL, ("--model", "byzantine", "--rule", "w-msr"), "split"),
+            (CYCLE, (), "split"),
+            (CYCLE, ("--rule", "dp-msr"), "split"),
+            (CYCLE, ("-f", "0"), "agreement"),
+            (COMPLETE, ("--schedule", "adversarial", "--runs", "3"), "agreement"),
+            (COMPLETE, ("--schedule", "random", "--adversary", "random", "--tau", "6"), "agreement"),
+            (COMPLETE, ("--active", "0", "--speed", "5", "-T", "0.5", "--alpha", "3"), "agreement"),
+        ],
+    )
+    def test_outcomes_and_exit_codes(self, graph: bytes, arguments: tuple[str, ...], outcome: str) -> None:
+        arguments = (*arguments, "--steps", "300")
+        assert document("simulate", "-", *arguments, graph=graph)["outcome"] == outcome
+        other = "split" if outcome == "agreement" else "agreement"
+        assert run("simulate", "-", *arguments, graph=graph).exit_code == ExitCode.DONE
+        assert run("simulate", "-", *arguments, "--expect", outcome, graph=graph).exit_code == ExitCode.DONE
+        assert run("simulate", "-", *arguments, "--expect", other, graph=graph).exit_code == ExitCode.REFUTED
+
+    @pytest.mark.parametrize(("nodes", "outcome"), [(0, "agreement"), (1, "agreement"), (2, "split")])
+    def test_hardly_anybody(self, nodes: int, outcome: str) -> None:
+        """Two vehicles with f = 1 drop each other's value: both stay where they are."""
+        graph = encode_topology(nx.complete_graph(nodes))
+        assert document("simulate", "-", "--steps", "50", graph=graph)["outcome"] == outcome
+        assert document("attack", "-", "--steps", "50", graph=graph)["outcome"] == outcome
+
+    def test_undecided_at_the_horizon(self) -> None:
+        done = run("simulate", "-", "--steps", "3", graph=COMPLETE)
+        assert done.exit_code == ExitCode.UNDECIDED
+        assert done.stdout.startswith("undecided:")
+        assert run("simulate", "-", "--steps", "3", "--expect", "split", graph=COMPLETE).exit_code == ExitCode.UNDECIDED
+
+    def test_the_time_limit(self) -> None:
+        done = run("simulate", "-", "--steps", "100000000", "--timeout", "0.2", "--adversary", "sine", graph=COMPLETE)
+        assert done.exit_code == ExitCode.UNDECIDED
+        assert "time limit" in done.stderr
+
+    def test_the_same_seed_gives_the_same_bytes(self) -> None:
+        arguments = ("simulate", "-", "--adversary", "random", "--schedule", "random", "--json", "--seed")
+        first, same, other = (run(*arguments, seed, graph=WHEEL).stdout for seed in ("4", "4", "5"))
+        assert first == same
+        assert first != other
+
+    def test_text(self) -> None:
+        done = run("simulate", "-", "--schedule", "delayed", graph=WHEEL)
+        assert done.stdout.splitlines()[0] == "split: normal vehicles stayed apart"
+        assert "{0}, seed 0: split, exactly" in done.stdout
+        assert done.stdout.count("group ") == 2
+
+    def test_gains_outside_the_theory_are_said(self) -> None:
+        done = run("simulate", "-", "--alpha", "0.1", graph=COMPLETE)
+        assert "nothing is promised" in done.stderr
+
+    @pytest.mark.parametrize(
+        ("arguments", "code"),
+        [
+            ((), ExitCode.USAGE),
+            (("-", "--experiment", "gap"), ExitCode.USAGE),
+            (("--experiment", "setting-3"), ExitCode.USAGE),
+            (("-", "--rule", "dp-msr", "--schedule", "delayed"), ExitCode.USAGE),
+            (("-", "--malicious", "x"), ExitCode.USAGE),
+            (("-", "--malicious", "1", "--malicious", "2"), ExitCode.USAGE),
+            (("-", "-T", "0"), ExitCode.USAGE),
+            (("-", "--schedule", "random", "--tau", "-1"), ExitCode.USAGE),
+            (("--replay", "missing.json", "--certificate", "missing.cert"), ExitCode.USAGE),
+            (("--replay", "missing.json"), ExitCode.BAD_INPUT),
+            (("-", "--attack", "missing.json"), ExitCode.BAD_INPUT),
+            (("-", "--certificate", "missing.cert"), ExitCode.BAD_INPUT),
+            (("-", "--attack", "a", "--certificate", "b"), ExitCode.USAGE),
+            (("missing.json",), ExitCode.BAD_INPUT),
+        ],
+    )
+    def test_what_cannot_be_run(self, arguments: tuple[str, ...], code: ExitCode) -> None:
+        done = run("simulate", *arguments, graph=WHEEL)
+        assert done.exit_code == code, done.output
+        assert done.stdout == ""
+
+    def test_nodes_are_named_by_label(self) -> None:
+        graph = rb.Digraph([1, "1", "b", (0, 1)], [])
+        for text, label in (("1", 1), ('"1"', "1"), ("b", "b"), ("[0, 1]", (0, 1))):
+            assert simulate_command.node_named(graph, text) == label
+        assert simulate_command.node_named(rb.Digraph(["1"], []), "1") == "1"
+        for text in ("true", "1.0", "c", "{}", "null", "[" * 100_000):
+            with pytest.raises(ValueError, match="named by its label"):
+                simulate_command.node_named(graph, text)
+
+    def test_save_replay_and_plot(self, tmp_path: Path) -> None:
+        saved, picture = tmp_path / "run.json", tmp_path / "run.png"
+        first = document("simulate", "-", "--save", saved, "--plot", picture, "--adversary", "random", graph=WHEEL)
+        assert document("simulate", "--replay", saved) == first
+        assert picture.read_bytes().startswith(b"\x89PNG")
+
+    def test_a_certificate_is_put_to_the_test(self, tmp_path: Path) -> None:
+        from certificates.verification import FORMAT
+
+        graph = rb.Digraph.from_networkx(nx.complete_graph(5))
+        claim = {"property": "rs-robust", "r": 3, "s": 1, "verdict": "robust"}
+        header = {"format": FORMAT, "graph": graph.sha256, "claim": claim, "evidence": {"kind": "degree"}}
+        path = tmp_path / "k5.cert"
+        path.write_bytes(json.dumps(header).encode() + b"\n")
+        found = document("simulate", "-", "--certificate", path, "-f", "1", "--steps", "200", graph=COMPLETE)
+        assert (found["outcome"], found["validation"], found["exhaustive"]) == ("agreement", "confirmed", True)
+        assert run("simulate", "-", "--certificate", path, graph=CYCLE).exit_code == ExitCode.REFUTED
+        path.write_bytes(b"not a certificate")
+        assert run("simulate", "-", "--certificate", path, graph=COMPLETE).exit_code == ExitCode.BAD_INPUT
+
+
+class TestExperiments:
+    def test_json(self) -> None:
+        found = document("simulate", "--experiment", "proposition-1")
+        assert found["schema"] == "robustness/simulate/1"
+        assert (found["experiment"], found["outcome"], found["as_reported"]) == ("proposition-1", "split", True)
+        assert len(found["cases"]) == 6
+        assert all(case["exact"] and case["outcome"] == "split" for case in found["cases"])
+
+    @pytest.mark.parametrize(("name", "outcome"), [("necessity", "split"), ("corollary-2", "agreement")])
+    def test_exit_codes(self, name: str, outcome: str) -> None:
+        assert run("simulate", "--experiment", name, "--expect", outcome).exit_code == ExitCode.DONE
+        other = "split" if outcome == "agreement" else "agreement"
+        assert run("simulate", "--experiment", name, "--expect", other).exit_code == ExitCode.REFUTED
+
+    def test_pictures(self, tmp_path: Path) -> None:
+        done = run("simulate", "--experiment", "corollary-1", "--plot", tmp_path / "figures")
+        assert done.exit_code == ExitCode.DONE
+        assert [path.suffix for path in (tmp_path / "figures").iterdir()] == [".png"]
+        assert done.stdout.startswith("Corollary 1")
+
+    def test_the_time_limit(self) -> None:
+        assert run("simulate", "--experiment", "setting-1", "--timeout", "0.05").exit_code == ExitCode.UNDECIDED
+
+
+class TestAttack:
+    def test_json_key_by_key(self) -> None:
+        found = document("attack", "-", graph=CYCLE)
+        assert set(found) == {"schema", "graph", "f", "model", "outcome", "reason", "attack"}
+        assert (found["schema"], found["f"], found["model"]) == ("robustness/attack-result/1", 1, "malicious")
+        assert found["outcome"] == "split"
+        assert found["attack"]["schema"] == "robustness/attack/1"
+
+    @pytest.mark.parametrize(
+        ("graph", "model", "f", "outcome"),
+        [
+            (CYCLE, "malicious", 1, "split"),
+            (WHEEL, "malicious", 1, "agreement"),
+            (WHEEL, "delayed", 1, "split"),
+            (WHEEL, "byzantine", 1, "split"),
+            (COMPLETE, "delayed", 1, "agreement"),
+            (COMPLETE, "malicious", 3, "split"),
+        ],
+    )
+    def test_outcomes_and_exit_codes(self, graph: bytes, model: str, f: int, outcome: str) -> None:
+        arguments = ("attack", "-", "--model", model, "-f", str(f), "--steps", "50")
+        assert document(*arguments, graph=graph)["outcome"] == outcome
+        found = ExitCode.DONE if outcome == "split" else ExitCode.REFUTED
+        assert run(*arguments, graph=graph).exit_code == found
+        for expected in ("split", "agreement"):
+            code = ExitCode.DONE if expected == outcome else ExitCode.REFUTED
+            assert run(*arguments, "--expect", expected, graph=graph).exit_code == code
+
+    def test_where_the_theory_is_open(self) -> None:
+        done = run("attack", "-", "--model", "delayed", graph=encode_topology(nx.complete_graph(4)))
+        assert done.exit_code == ExitCode.UNDECIDED
+        assert "open" in done.stdout
+
+    @pytest.mark.parametrize(("graph", "model"), [(CYCLE, "malicious"), (WHEEL, "delayed"), (WHEEL, "byzantine")])
+    def test_the_file_is_played_by_simulate(self, tmp_path: Path, graph: bytes, model: str) -> None:
+        path = tmp_path / "attack.json"
+        assert run("attack", "-", "--model", model, "-o", path, graph=graph).exit_code == ExitCode.DONE
+        done = document("simulate", "-", "--attack", path, graph=graph)
+        assert done["outcome"] == "split"
+        assert done["runs"][0]["exact"] is True
+        refuted = run("simulate", "-", "--attack", path, "--expect", "agreement", graph=graph)
+        assert refuted.exit_code == ExitCode.REFUTED
+
+    def test_the_file_is_bound_to_its_graph(self, tmp_path: Path) -> None:
+        path = tmp_path / "attack.json"
+        run("attack", "-", "-o", path, graph=CYCLE)
+        done = run("simulate", "-", "--attack", path, graph=WHEEL)
+        assert done.exit_code == ExitCode.BAD_INPUT
+        assert "another graph" in done.stderr
+        path.write_text("{}")
+        assert run("simulate", "-", "--attack", path, graph=CYCLE).exit_code == ExitCode.BAD_INPUT
+
+    def test_no_file_without_an_attack(self, tmp_path: Path) -> None:
+        run("attack", "-", "-o", tmp_path / "attack.json", graph=COMPLETE)
+        assert not (tmp_path / "attack.json").exists()
+
+    def test_a_file_that_cannot_be_written(self, tmp_path: Path) -> None:
+        assert run("attack", "-", "-o", tmp_path / "no" / "attack.json", graph=CYCLE).exit_code == ExitCode.USAGE

@@ -1,0 +1,221 @@
+"""``robustness tolerance``: the paragraph, the table, the evidence, the JSON, the gate and the files."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import networkx as nx
+import pytest
+from click.testing import CliRunner, Result
+
+from certificates import verify, verify_tolerance
+from cli.exit_codes import ExitCode
+from cli.main import robustness
+from cli.tolerance import MODELS
+from robustness.files import encode_topology
+from robustness.threat_models import THREAT_MODELS
+from robustness.threat_models.results import ToleranceResult
+
+WHEEL = encode_topology(nx.wheel_graph(5))
+BETWEEN = encode_topology(nx.complete_graph(8))
+ROOT = Path(__file__).parents[2]
+
+
+def tolerance(*arguments: str, graph: bytes = WHEEL) -> Result:
+    return CliRunner().invoke(robustness, ["tolerance", "-", *arguments], input=graph)
+
+
+def document(*arguments: str, graph: bytes = WHEEL) -> dict[str, object]:
+    outcome = tolerance("--json", *arguments, graph=graph)
+    assert outcome.stdout.count("\n") == 1
+    found: dict[str, object] = json.loads(outcome.stdout)
+    return found
+
+
+def test_models_are_those_of_the_library() -> None:
+    assert tuple(THREAT_MODELS) == MODELS
+    for name in MODELS:
+        assert name in CliRunner().invoke(robustness, ["tolerance", "--help"]).stdout
+
+
+class TestText:
+    def test_a_paragraph_then_the_table_then_the_evidence(self) -> None:
+        outcome = tolerance()
+        assert outcome.exit_code == ExitCode.DONE
+        paragraph, table, *evidence = outcome.stdout.split("\n\n")
+        assert paragraph.startswith("A network of 5 vehicles and 16 arcs. In step, without delays")
+        assert "\n" not in paragraph
+        rows = [line.split() for line in table.splitlines()]
+        assert rows[0] == ["model", "guaranteed", "refuted", "between"]
+        assert rows[1:] == [
+            ["malicious", "1", "2", "-"],
+            ["malicious-local", "0", "2", "1", "open"],
+            ["byzantine", "0", "1", "-"],
+            ["delayed", "0", "1", "-"],
+            ["delayed-local", "0", "1", "-"],
+        ]
+        assert len(evidence) == 6
+        assert "S1        {" in evidence[3]
+        assert "simulated an exact split" in evidence[3]
+        assert "theorem   the source paper, Theorem 1, sufficiency" in evidence[3]
+
+    def test_one_model(self) -> None:
+        outcome = tolerance("--model", "delayed")
+        assert "byzantine" not in outcome.stdout
+        assert outcome.stdout.startswith("A network of 5 vehicles and 16 arcs. With delays")
+
+    @pytest.mark.parametrize("n", [0, 1])
+    def test_nobody_to_disagree(self, n: int) -> None:
+        outcome = tolerance(graph=encode_topology(nx.empty_graph(n)))
+        assert outcome.exit_code == ExitCode.DONE
+        assert "Fewer than two vehicles cannot disagree" in outcome.stdout
+
+    def test_not_even_agreement_without_liars(self) -> None:
+        outcome = tolerance("--model", "delayed", graph=encode_topology(nx.empty_graph(3)))
+        assert "agreement fails even though nobody lies" in outcome.stdout
+        assert "delayed                none        0  -" in outcome.stdout
+
+
+class TestJson:
+    def test_key_by_key(self) -> None:
+        found = document("--model", "delayed", "--require", "1")
+        assert list(found) == ["schema", "graph", "summary", "models", "require", "seconds"]
+        assert found["schema"] == "robustness/tolerance/1"
+        assert found["require"] == {"f": 1, "verdict": "refuted"}
+        (model,) = found["models"]
+        assert list(model) == [
+            "model", "setting", "guaranteed", "refuted", "open", "undecided", "is_decided", "summary", "reasons",
+            "attack", "confirmed",
+        ]  # fmt: skip
+        assert (model["model"], model["guaranteed"], model["refuted"]) == ("delayed", 0, 1)
+        assert (model["open"], model["undecided"], model["is_decided"], model["confirmed"]) == ([], [], True, True)
+        assert [reason["standing"] for reason in model["reasons"]] == ["guaranteed", "refuted"]
+        assert all(list(reason) == ["standing", "f", "statement", "theorem", "evidence"] for reason in model["reasons"])
+        assert model["attack"]["kind"] == "trap"
+        assert model["attack"]["malicious"] == [0]
+
+    def test_all_models_and_no_gate(self) -> None:
+        found = document()
+        assert [model["model"] for model in found["models"]] == list(MODELS)
+        assert found["require"] is None
+        assert found["models"][1]["open"] == [1]
+
+
+class TestGate:
+    @pytest.mark.parametrize(
+        ("model", "f", "code", "word"),
+        [
+            ("delayed", 1, ExitCode.DONE, "guaranteed:"),
+            ("delayed", 2, ExitCode.UNDECIDED, "open:"),
+            ("delayed", 3, ExitCode.REFUTED, "refuted:"),
+            ("delayed", 99, ExitCode.REFUTED, "refuted:"),
+            ("byzantine", 2, ExitCode.DONE, "guaranteed:"),
+            ("malicious", 3, ExitCode.DONE, "guaranteed:"),
+            ("malicious", 4, ExitCode.REFUTED, "refuted:"),
+            ("malicious-local", 2, ExitCode.UNDECIDED, "open:"),
+        ],
+    )
+    def test_exit_codes(self, model: str, f: int, code: ExitCode, word: str) -> None:
+        outcome = tolerance("--model", model, "--require", str(f), graph=BETWEEN)
+        assert outcome.exit_code == code
+        assert outcome.stdout.startswith(word)
+
+    @pytest.mark.parametrize(("f", "code"), [(1, ExitCode.DONE), (2, ExitCode.UNDECIDED), (3, ExitCode.REFUTED)])
+    def test_without_a_model_the_worst_counts(self, f: int, code: ExitCode) -> None:
+        assert tolerance("--require", str(f), graph=BETWEEN).exit_code == code
+
+    def test_a_limit_is_undecided(self) -> None:
+        graph = encode_topology(nx.random_regular_graph(10, 60, seed=1))
+        found = document("--model", "delayed", "--require", "3", "--timeout", "0.2", graph=graph)
+        assert found["require"] == {"f": 3, "verdict": "undecided"}
+        assert tolerance("--model", "delayed", "--timeout", "0.2", graph=graph).exit_code == ExitCode.UNDECIDED
+
+    def test_work_that_overruns_claims_nothing(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr("cli.interruption.GRACE", 0.0)
+        monkeypatch.setattr("cli.tolerance._examine", lambda *_: time.sleep(1))
+        outcome = tolerance("--require", "0", "--timeout", "0.05")
+        assert outcome.exit_code == ExitCode.UNDECIDED
+        assert outcome.stdout.startswith("undecided:")
+        assert "nothing was decided" in outcome.stdout
+
+    def test_an_attack_that_does_not_split_is_a_bug_not_a_verdict(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr("robustness.threat_models.confirming.confirm", lambda _: False)
+        outcome = tolerance("--model", "delayed", "--require", "1")
+        assert outcome.exit_code == ExitCode.INTERNAL_ERROR
+        assert "please report" in outcome.stderr
+        assert outcome.stdout == ""
+
+
+class TestFiles:
+    def test_certificates_and_attacks(self, tmp_path: Path) -> None:
+        outcome = tolerance("-o", str(tmp_path / "evidence"), graph=BETWEEN)
+        assert outcome.exit_code == ExitCode.DONE
+        folder = tmp_path / "evidence"
+        graph = (folder / "graph.json").read_bytes()
+        found = document(graph=BETWEEN)
+        for model in found["models"]:
+            name = model["model"]
+            for what in ("guaranteed", "refuted"):
+                data = (folder / f"{name}-{what}-{model[what]}.cert").read_bytes()
+                if b"tolerance-certificate" in data:
+                    claim = verify_tolerance(graph, data)
+                    assert (claim.f, claim.verdict) == (model[what], "together" if what == "guaranteed" else "apart")
+                    assert claim.bound == ("local" if "local" in name else "total")
+                    assert claim.faces == (1 if "malicious" in name else 2)
+                else:
+                    ordinary = verify(graph, data)
+                    exact = name == "malicious"
+                    r = model[what] + 1 if exact else 2 * model[what] + 1
+                    assert (ordinary.verdict, ordinary.r) == ("robust" if what == "guaranteed" else "not-robust", r)
+                    assert ordinary.s == (r if exact else 1)
+        attack = folder / "delayed-attack.json"
+        arguments = ["simulate", "-", "--attack", str(attack), "--steps", "20"]
+        replay = CliRunner().invoke(robustness, arguments, input=BETWEEN)
+        assert replay.exit_code == ExitCode.DONE, replay.output
+        assert "exactly" in replay.stdout
+
+    def test_byzantine_beyond_twice_robust_is_certified_by_removals(self, tmp_path: Path) -> None:
+        assert tolerance("--model", "byzantine", "-o", str(tmp_path), graph=BETWEEN).exit_code == ExitCode.DONE
+        graph, data = (tmp_path / name for name in ("graph.json", "byzantine-guaranteed-2.cert"))
+        claim = verify_tolerance(graph.read_bytes(), data.read_bytes())
+        assert (claim.evidence, claim.certificates) == ("removals", 28)
+
+    def test_what_was_not_certified_is_said(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr("robustness.threat_models.certifying._MOST_REMOVALS", 1)
+        outcome = tolerance("--model", "byzantine", "-o", str(tmp_path), graph=BETWEEN)
+        assert "no certificate of byzantine, f = 2 guaranteed" in outcome.stderr
+        assert not (tmp_path / "byzantine-guaranteed-2.cert").exists()
+
+
+class TestMisuse:
+    @pytest.mark.parametrize("arguments", [["--model", "friendly"], ["--require", "-1"], ["--require", "x"]])
+    def test_usage(self, arguments: list[str]) -> None:
+        assert tolerance(*arguments).exit_code == ExitCode.USAGE
+
+    def test_bad_input(self) -> None:
+        assert tolerance(graph=b"{}").exit_code == ExitCode.BAD_INPUT
+
+
+def test_ctrl_c(tmp_path: Path) -> None:
+    path = tmp_path / "graph.json"
+    path.write_bytes(encode_topology(nx.random_regular_graph(10, 60, seed=1)))
+    process = subprocess.Popen(
+        [sys.executable, "-m", "cli", "tolerance", str(path), "--model", "byzantine"],
+        cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=dict(os.environ),
+    )  # fmt: skip
+    time.sleep(2.5)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=10)
+    assert (process.returncode, out) == (ExitCode.INTERRUPTED, "")
+    assert "interrupted: nothing is claimed" in err
+
+
+def test_summary_is_the_library_s(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ToleranceResult, "summary", lambda _: "as the library says")
+    assert document("--model", "delayed")["models"][0]["summary"] == "as the library says"

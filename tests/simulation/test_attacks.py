@@ -1,0 +1,321 @@
+"""Attacks made from evidence split exactly, on every small graph and under every rule."""
+
+from __future__ import annotations
+
+import copy
+import json
+import time
+from collections.abc import Iterator
+from itertools import combinations
+from typing import Any
+
+import networkx as nx
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import robustness as rb
+from robustness.constructions.counterexamples import FIVE_NODE_READINGS, five_node_figure, two_f_robust_counterexample
+from robustness.constructions.small_graphs import each_graph
+from robustness.constructions.traps import is_trap
+from robustness.definitions import is_violation
+from robustness.digraph import Digraph, as_digraph
+from robustness.errors import InvalidParameter
+from robustness.simulation import RULES, Attack, PromiseWarning, attack_from_trap, attack_from_violation, find_attack
+from robustness.simulation.schedules import AdversarialDelays, AdversarialUpdates, RandomDelays, RandomUpdates, Schedule
+
+LIGHT_SCHEDULES = [
+    Schedule(RandomUpdates(0.4, 3), RandomDelays(2)),
+    Schedule(AdversarialUpdates(3), AdversarialDelays(2)),
+]
+
+
+def disjoint_pairs(n: int) -> Iterator[tuple[frozenset[int], frozenset[int]]]:
+    """Yield every pair of nonempty disjoint id sets once."""
+    for code in range(3**n):
+        places = [code // 3**i % 3 for i in range(n)]
+        first, second = (frozenset(i for i in range(n) if places[i] == side) for side in (1, 2))
+        if first and second and min(first) < min(second):
+            yield first, second
+
+
+def traps(graph: Digraph, f: int) -> Iterator[tuple[frozenset[int], frozenset[int], frozenset[int]]]:
+    """Yield every trap for f, by the definition."""
+    for size in range(f + 1):
+        for chosen in combinations(range(graph.n), size):
+            for first, second in disjoint_pairs(graph.n):
+                if is_trap(graph, f, *(graph.labels_of(ids) for ids in (chosen, first, second))):
+                    yield frozenset(chosen), first, second
+
+
+def assert_splits(attack: Attack, steps: int = 25, **changes: Any) -> None:
+    outcome = attack.run(steps, **changes)
+    assert outcome.exact, (attack.story(), changes)
+    assert outcome.verdict.value == "split"
+
+
+class TestEverySmallGraph:
+    def test_what_is_not_robust_is_split_by_its_own_attack(self) -> None:
+        """n <= 5, f = 1, every graph that is not (2,2)-robust; every rule."""
+        refuted = 0
+        for graph in each_graph(5, directed=False):
+            if graph.n < 2:
+                continue
+            result = rb.check_rs_robustness(graph, 2, 2)
+            if result.witness is not None:
+                refuted += 1
+                for rule in RULES:
+                    assert_splits(attack_from_violation(graph, 1, result.witness), rule=rule)
+        assert refuted == 42  # of 51; the other 9 are (2,2)-robust and meet the battery
+
+    def test_every_violation_of_a_few(self) -> None:
+        """All violating pairs, not only the one that is found, on graphs and digraphs of up to 4 nodes, f = 1."""
+        count = 0
+        for graph in each_graph(3, directed=True):
+            for first, second in disjoint_pairs(graph.n):
+                if is_violation(graph, first, second, 2, 2):
+                    count += 1
+                    assert_splits(attack_from_violation(graph, 1, (graph.labels_of(first), graph.labels_of(second))), 8)
+        assert count > 50
+
+    def test_every_trap_of_graphs_on_four_nodes(self) -> None:
+        assert self.play_traps(range(2, 5)) > 300
+
+    @pytest.mark.slow
+    def test_every_trap_of_graphs_on_five_nodes(self) -> None:
+        assert self.play_traps([5]) == 2380
+
+    @staticmethod
+    def play_traps(sizes: Any) -> int:
+        """Every trap (M, S1, S2) for f = 1 is an attack with delays; one in seven is played by Byzantine nodes too."""
+        count = 0
+        for graph in each_graph(max(sizes), directed=False):
+            for evidence in traps(graph, 1) if graph.n in sizes else ():
+                sets = [graph.labels_of(ids) for ids in evidence]
+                assert_splits(attack_from_trap(graph, 1, *sets), 12)
+                count += 1
+                if count % 7 == 0:
+                    assert_splits(attack_from_trap(graph, 1, *sets, "byzantine"), 12, rule="w-msr")
+        return count
+
+
+class TestTheSplitDependsOnNothingElse:
+    WHEEL = five_node_figure()
+
+    def attacks(self) -> list[Attack]:
+        trap = self.WHEEL.graph["trap"]
+        ring = nx.cycle_graph(8)
+        return [
+            attack_from_trap(self.WHEEL, 1, trap["M"], trap["S1"], trap["S2"]),
+            attack_from_trap(self.WHEEL, 1, trap["M"], trap["S1"], trap["S2"], "byzantine"),
+            attack_from_violation(ring, 1, rb.check_rs_robustness(ring, 2, 2).witness),
+        ]
+
+    @pytest.mark.filterwarnings("ignore::robustness.simulation.gains.PromiseWarning")
+    @given(
+        st.floats(0.001, 3),
+        st.floats(0.01, 30),
+        st.sampled_from(["unit", "uniform"]),
+        st.sampled_from(["adp-msr", "w-msr"]),
+    )
+    @settings(max_examples=30)
+    def test_period_gains_weights_and_rule(self, T: float, alpha: float, weights: str, rule: str) -> None:
+        """Also where everybody else oscillates or diverges: exactly, as the module argues."""
+        for attack in self.attacks():
+            assert_splits(attack, 40, T=T, alpha=alpha, weights=weights, rule=rule, target_speed=17.3)
+
+    def test_schedules(self) -> None:
+        for attack in self.attacks():
+            for schedule in LIGHT_SCHEDULES:
+                if not attack.delayed or schedule.delay_rule.adversarial:
+                    assert_splits(attack, 60, schedule=schedule)
+
+    def test_formations(self) -> None:
+        for attack in self.attacks():
+            labels = attack.graph.labels
+            assert_splits(attack, 40, offsets={label: 3.25 * i - 7 for i, label in enumerate(labels)})
+
+    def test_sensing(self) -> None:
+        for attack in self.attacks():
+            if attack.model == "malicious":
+                assert_splits(attack, 40, active=frozenset(attack.graph.labels))
+
+    def test_gains_outside_the_theory_are_warned_of(self) -> None:
+        with pytest.warns(PromiseWarning):
+            assert_splits(self.attacks()[0], 20, T=0.01, alpha=2.0)
+
+
+class TestPropositionOne:
+    @pytest.mark.parametrize("f", [1, 2, 3])
+    @pytest.mark.parametrize("variant", ["paper", "corrected"])
+    def test_is_a_trap(self, f: int, variant: str) -> None:
+        graph = two_f_robust_counterexample(f, variant)
+        trap = graph.graph["trap"]
+        assert_splits(attack_from_trap(graph, f, trap["M"], trap["S1"], trap["S2"]), 100)
+
+    @pytest.mark.parametrize("reading", FIVE_NODE_READINGS)
+    def test_the_five_node_figure(self, reading: str) -> None:
+        graph = five_node_figure(reading)
+        trap = graph.graph["trap"]
+        assert_splits(attack_from_trap(graph, 1, trap["M"], trap["S1"], trap["S2"]), 100)
+        assert rb.is_rs_robust(graph, 2, 2)
+
+    def test_without_delays_the_same_adversary_fails(self) -> None:
+        """The wheel is (2,2)-robust: two faces need delays."""
+        graph = five_node_figure()
+        trap = graph.graph["trap"]
+        attack = attack_from_trap(graph, 1, trap["M"], trap["S1"], trap["S2"])
+        assert attack.run(300, schedule=Schedule(), groups=None).verdict.value == "agreement"
+
+    def test_more_malicious_nodes_than_f_locally(self) -> None:
+        """f-local: two wheels far apart, each with its own hub; f-total would refuse two malicious nodes."""
+        graph = nx.disjoint_union(nx.wheel_graph(5), nx.wheel_graph(5))
+        sets = ([0, 5], [1, 2], [3, 4])
+        assert_splits(attack_from_trap(graph, 1, *sets, "malicious-local"))
+        with pytest.raises(InvalidParameter, match="f-total"):
+            attack_from_trap(graph, 1, *sets)
+
+
+class TestEvidenceIsChecked:
+    CYCLE, WHEEL = nx.cycle_graph(6), nx.wheel_graph(5)
+
+    @pytest.mark.parametrize(
+        ("graph", "f", "pair"),
+        [
+            (CYCLE, 0, ({0, 1, 2}, {3, 4, 5})),
+            (CYCLE, 1, (set(), {3})),
+            (CYCLE, 1, ({0, 1}, {1, 2})),
+            (WHEEL, 1, ({1, 2}, {3, 4})),
+            (CYCLE, -1, ({0, 1, 2}, {3, 4, 5})),
+            (CYCLE, 1.0, ({0, 1, 2}, {3, 4, 5})),
+        ],
+    )
+    def test_no_violation_no_attack(self, graph: nx.Graph, f: Any, pair: Any) -> None:
+        with pytest.raises(InvalidParameter):
+            attack_from_violation(graph, f, pair)
+
+    @pytest.mark.parametrize(
+        ("f", "M", "S1", "S2"),
+        [
+            (1, {0}, {1, 2}, {2, 3}),
+            (1, {1}, {1, 2}, {3, 4}),
+            (1, {0}, set(), {3, 4}),
+            (1, {0, 1}, {2}, {3}),
+            (0, set(), {1, 2}, {3, 4}),
+            (1, {3}, {0, 1}, {2}),
+            (-1, set(), {1}, {3}),
+        ],
+    )
+    def test_no_trap_no_attack(self, f: int, M: set[int], S1: set[int], S2: set[int]) -> None:
+        with pytest.raises(InvalidParameter):
+            attack_from_trap(self.WHEEL, f, M, S1, S2)
+
+    def test_a_malicious_set_of_ones_own(self) -> None:
+        """Three cliques in a chain, each joint doubled: f = 1 local, with two malicious nodes far apart."""
+        chain = nx.Graph()
+        for block in range(3):
+            chain.add_edges_from(combinations(range(4 * block, 4 * block + 4), 2))
+        chain.add_edges_from([(3, 4), (3, 5), (7, 8), (7, 9)])
+        pair = (set(range(4)), set(range(8, 12)))
+        assert_splits(attack_from_violation(chain, 1, pair, malicious={3}))
+        local = attack_from_violation(chain, 1, pair, malicious={3, 11}, model="malicious-local")
+        assert_splits(local, 60)
+        assert Attack.from_dict(chain, json.loads(json.dumps(local.as_dict()))) == local
+        for bad, model in (({3, 11}, "malicious"), (set(), "malicious"), ({3, 4}, "malicious-local"), ({3}, "evil")):
+            with pytest.raises(InvalidParameter):
+                attack_from_violation(chain, 1, pair, malicious=bad, model=model)
+        with pytest.raises(InvalidParameter, match="normal node in each"):
+            attack_from_violation(nx.empty_graph(2), 2, ({0}, {1}), malicious={0})
+
+    def test_unknown_nodes_and_models(self) -> None:
+        with pytest.raises(ValueError, match="'x' is none"):
+            attack_from_violation(self.CYCLE, 1, ({"x"}, {0}))
+        with pytest.raises(InvalidParameter, match="a fault model is one of"):
+            attack_from_trap(self.WHEEL, 1, {0}, {1, 2}, {3, 4}, "evil")
+
+
+class TestFiles:
+    TUPLES = nx.grid_2d_graph(2, 3)
+
+    def attacks(self) -> list[Attack]:
+        wheel = nx.relabel_nodes(nx.wheel_graph(5), {0: "hub", 1: 1, 2: "1"})
+        return [
+            attack_from_violation(self.TUPLES, 1, rb.check_rs_robustness(self.TUPLES, 2, 2).witness),
+            attack_from_trap(wheel, 1, {"hub"}, {1, "1"}, {3, 4}),
+            attack_from_trap(wheel, 1, {"hub"}, {1, "1"}, {3, 4}, "byzantine"),
+        ]
+
+    def test_round_trip(self) -> None:
+        for attack in self.attacks():
+            document = json.loads(json.dumps(attack.as_dict()))
+            assert Attack.from_dict(attack.graph, document) == attack
+
+    def test_changing_anything_is_noticed(self) -> None:
+        changes = {
+            "schema": "robustness/attack/2", "kind": "trick", "graph": {}, "f": 0, "model": "byzantine",
+            "malicious": [], "S1": [1], "S2": [], "delayed": False, "positions": {}, "story": "",
+        }  # fmt: skip
+        attack = self.attacks()[1]
+        original = json.loads(json.dumps(attack.as_dict()))
+        assert set(changes) == set(original)
+        for key, value in changes.items():
+            changed = copy.deepcopy(original)
+            changed[key] = value
+            with pytest.raises(ValueError, match=r"attack|trap|f-total"):
+                Attack.from_dict(attack.graph, changed)
+        for document in (None, [], {}, {**original, "extra": 1}, {**original, "f": "1"}):
+            with pytest.raises(InvalidParameter):
+                Attack.from_dict(attack.graph, document)
+
+    def test_another_graph_is_refused(self) -> None:
+        attack = self.attacks()[1]
+        with pytest.raises(InvalidParameter, match="another graph"):
+            Attack.from_dict(nx.wheel_graph(6), attack.as_dict())
+
+
+class TestFinding:
+    @pytest.mark.parametrize(
+        ("graph", "f", "model", "outcome"),
+        [
+            (nx.cycle_graph(6), 1, "malicious", "split"),
+            (nx.wheel_graph(5), 1, "malicious", "agreement"),
+            (nx.wheel_graph(5), 1, "delayed", "split"),
+            (nx.wheel_graph(5), 1, "byzantine", "split"),
+            (nx.complete_graph(5), 1, "delayed", "agreement"),
+            (nx.complete_graph(5), 1, "byzantine", "agreement"),
+            (nx.complete_graph(4), 1, "byzantine", "agreement"),
+            (nx.complete_graph(4), 1, "delayed", "undecided"),
+            (nx.complete_graph(4), 2, "malicious", "split"),
+            (nx.complete_graph(2), 1, "delayed", "split"),
+            (nx.complete_graph(3), 5, "malicious", "split"),
+            (nx.complete_graph(2), 0, "byzantine", "agreement"),
+            (nx.empty_graph(1), 0, "malicious", "agreement"),
+            (nx.empty_graph(0), 0, "malicious", "agreement"),
+            (nx.path_graph(3), 0, "delayed", "agreement"),
+            (nx.empty_graph(3), 0, "malicious", "split"),
+        ],
+    )
+    def test_every_answer(self, graph: nx.Graph, f: int, model: str, outcome: str) -> None:
+        found = find_attack(graph, f, model)
+        assert found.outcome == outcome, found.reason
+        assert (found.attack is not None) == (outcome == "split")
+        if found.attack is not None:
+            assert_splits(found.attack)
+
+    @pytest.mark.parametrize("model", ["delayed", "byzantine"])
+    def test_the_time_limit_is_for_all_sets_together(self, model: str) -> None:
+        """A million sets M to try: a limit of half a second ends it soon, and nothing is claimed."""
+        graph = nx.gnp_random_graph(42, 0.5, seed=2)
+        started = time.monotonic()
+        found = find_attack(graph, 5, model, time_limit=0.5)
+        assert found.outcome == "undecided"
+        assert time.monotonic() - started < 30  # generous: the machine may be busy
+
+    def test_bad_questions(self) -> None:
+        with pytest.raises(InvalidParameter, match="model"):
+            find_attack(nx.cycle_graph(4), 1, "local")
+        with pytest.raises(InvalidParameter, match="f is"):
+            find_attack(nx.cycle_graph(4), -1)
+
+    def test_the_graph_may_be_ours(self) -> None:
+        assert find_attack(as_digraph(nx.cycle_graph(6)), 1).outcome == "split"

@@ -1,0 +1,163 @@
+"""Motion, the change of variables, formations, gains and weights."""
+
+from __future__ import annotations
+
+import networkx as nx
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robustness.digraph import Digraph, as_digraph
+from robustness.errors import InvalidParameter
+from robustness.simulation import PromiseWarning, Scenario, Start, Topology, simulate
+from robustness.simulation.dynamics import double_integrator, to_absolute, to_transformed
+from robustness.simulation.formation import arc_offsets, node_offsets, offsets_from_deltas
+from robustness.simulation.gains import arc_weights, gain_interval, kept_weight_bound, node_gains, promise_gap
+from robustness.simulation.rules import DP_MSR, W_MSR
+
+SMALL = st.floats(-100, 100)
+
+
+class TestMotion:
+    @given(SMALL, SMALL, st.floats(0.001, 3))
+    def test_at_rest_nothing_is_rounded(self, x: float, extra: float, T: float) -> None:
+        place, still = np.array([x]), np.zeros(1)
+        position, velocity = double_integrator(place, still, still, T)
+        assert position[0] == x
+        assert velocity[0] == 0
+
+    @given(SMALL, SMALL, SMALL, st.floats(0.01, 2), st.floats(-50, 50), st.integers(0, 1000))
+    def test_transformed_vehicles_move_by_the_same_equations(
+        self, x: float, v: float, u: float, T: float, speed: float, k: int
+    ) -> None:
+        """Equation 4 of the source paper: transform then move, or move then transform."""
+        xs, vs, us = np.array([x]), np.array([v]), np.array([u])
+        moved = to_transformed(*double_integrator(xs, vs, us, T), k + 1, T, speed)
+        transformed = double_integrator(*to_transformed(xs, vs, k, T, speed), us, T)
+        assert np.allclose(moved, transformed, atol=1e-8 * (1 + abs(k * T * speed)))
+
+    def test_the_change_of_variables_is_undone(self) -> None:
+        p, q = np.arange(6.0).reshape(3, 2), np.ones((3, 2))
+        steps = np.arange(3)[:, None]
+        back = to_transformed(*to_absolute(p, q, steps, 0.5, 8.0), steps, 0.5, 8.0)
+        assert np.array_equal(back[0], p)
+        assert np.array_equal(back[1], q)
+
+
+class TestFormation:
+    GRAPH = as_digraph(nx.path_graph(3))
+
+    def test_delta_is_where_i_wants_j(self) -> None:
+        offsets = node_offsets(self.GRAPH, {1: 2.0, 2: 5.0})
+        # arcs receiver-major: 1 -> 0, 0 -> 1, 2 -> 1, 1 -> 2
+        assert arc_offsets(self.GRAPH, offsets).tolist() == [2.0, -2.0, 3.0, -3.0]
+
+    def test_consistent_deltas_become_offsets(self) -> None:
+        deltas = {(0, 1): 2.0, (1, 0): -2.0, (1, 2): 3.0, (2, 0): -5.0}
+        assert offsets_from_deltas(self.GRAPH, deltas) == {0: 0.0, 1: 2.0, 2: 5.0}
+
+    @pytest.mark.parametrize(
+        "deltas",
+        [{(0, 1): 1.0, (1, 0): 1.0}, {(0, 1): 1.0, (1, 2): 1.0, (0, 2): 1.0}, {(0, 1): float("nan"), (1, 0): 0.0}],
+    )
+    def test_inconsistent_deltas_are_refused(self, deltas: dict[tuple[int, int], float]) -> None:
+        with pytest.raises(InvalidParameter, match="around every cycle"):
+            offsets_from_deltas(self.GRAPH, deltas)
+
+    def test_an_infinite_offset_is_refused(self) -> None:
+        with pytest.raises(InvalidParameter, match="finite"):
+            node_offsets(self.GRAPH, {0: float("inf")})
+
+    def test_vehicles_take_their_places(self) -> None:
+        """p_j - p_i -> delta_ij = d_j - d_i, for every pair of normal vehicles."""
+        graph = as_digraph(nx.complete_graph(5))
+        offsets = {0: 0.0, 1: 10.0, 2: -4.0, 3: 7.5, 4: 1.0}
+        scenario = Scenario(Topology((graph,)), 1, offsets=offsets, steps=400)
+        start = Start(frozenset({4}), (3.0, 1.0, 4.0, 1.0, 5.0), (1.0, -1.0, 0.5, 0.0, 0.0))
+        (outcome,) = simulate(scenario, [start], record=True)
+        assert outcome.verdict.value == "agreement"
+        p = outcome.trajectory.p[-1]
+        for i in range(4):
+            for j in range(4):
+                assert p[j] - p[i] == pytest.approx(offsets[j] - offsets[i], abs=1e-6)
+
+
+class TestGains:
+    def test_the_interval(self) -> None:
+        assert gain_interval(0.5) == (1.125, 1.875)
+        assert gain_interval(0.01, sigma=4.0) == (1.0002, 1.9998)
+
+    @given(st.floats(0.1, 2.9), st.lists(st.floats(0.01, 1), min_size=2, max_size=4))
+    def test_the_derivation(self, alpha_times_period: float, weights: list[float]) -> None:
+        """The two-step recursion of the module holds, and is a convex combination exactly inside the interval."""
+        T, n = 0.7, len(weights) + 1
+        alpha, sigma = alpha_times_period / T, sum(weights)
+        rng = np.random.default_rng(7)
+        p0, p1, neighbours = rng.normal(size=3).tolist(), None, rng.normal(size=(2, n - 1))
+        p, q = p0[0], p0[1]
+        positions = [p]
+        for k in range(2):
+            u = sum(a * (other - p) for a, other in zip(weights, neighbours[k], strict=True)) - alpha * q
+            p, q = (float(a) for a in double_integrator(np.float64(p), np.float64(q), np.float64(u), T))
+            positions.append(p)
+        p0, p1, p2 = positions
+        ahead, behind = 2 - alpha * T - T * T / 2 * sigma, alpha * T - 1 - T * T / 2 * sigma
+        mixed = ahead * p1 + behind * p0 + T * T / 2 * float(np.dot(weights, neighbours[0] + neighbours[1]))
+        assert p2 == pytest.approx(mixed, abs=1e-9)
+        low, high = gain_interval(T, sigma)
+        assert (low <= alpha * T <= high) == (ahead >= 0 and behind >= 0)
+
+    def test_defaults_lie_inside_and_the_papers_example_outside(self) -> None:
+        graph = as_digraph(nx.complete_graph(5))
+        uniform, unit = arc_weights(graph, "uniform"), arc_weights(graph, "unit")
+        assert promise_gap(graph, DP_MSR, 1, 1.0, node_gains(graph, None, 1.0), uniform) is None
+        for alpha in (2.0, 3.0, 10.0):
+            said = promise_gap(graph, DP_MSR, 1, 0.01, node_gains(graph, alpha, 0.01), unit)
+            assert said is not None
+            assert "nothing is promised" in said
+        assert promise_gap(graph, W_MSR, 1, 0.01, node_gains(graph, 2.0, 0.01), unit) is None
+
+    def test_a_run_outside_warns_and_claims_no_safety(self) -> None:
+        graph = as_digraph(nx.complete_graph(4))
+        scenario = Scenario(Topology((graph,)), 0, alpha=0.1, steps=20)
+        with pytest.warns(PromiseWarning, match="nothing is promised"):
+            (outcome,) = simulate(scenario, [Start(frozenset(), (0.0, 1.0, 2.0, 3.0), (0.0,) * 4)])
+        assert outcome.safe is None
+        assert outcome.promise is not None
+
+    @pytest.mark.parametrize("alpha", [0.0, -1.0, float("nan"), {0: 1.0}])
+    def test_bad_gains_are_refused(self, alpha: object) -> None:
+        with pytest.raises(InvalidParameter, match="alpha_i > 0"):
+            node_gains(Digraph([0, 1], []), alpha, 1.0)
+
+    def test_the_bound_on_kept_weight_is_reached_by_no_run(self) -> None:
+        graph = Digraph(range(4), [(1, 0), (2, 0), (3, 0)])
+        weights = arc_weights(graph, {(1, 0): 0.5, (2, 0): 1.0, (3, 0): 2.0})
+        assert kept_weight_bound(graph, weights, 1).tolist() == [3.0, 0.0, 0.0, 0.0]
+        assert kept_weight_bound(graph, weights, 5).tolist() == [0.0] * 4
+
+
+class TestWeights:
+    GRAPH = Digraph("abc", [("a", "b"), ("c", "b"), ("b", "a")])
+
+    def test_by_name(self) -> None:
+        assert arc_weights(self.GRAPH, "unit").tolist() == [1.0, 1.0, 1.0]
+        assert arc_weights(self.GRAPH, "uniform").tolist() == [1.0, 0.5, 0.5]
+
+    def test_custom(self) -> None:
+        table = {("a", "b"): 0.25, ("c", "b"): 0.5, ("b", "a"): 2.0}
+        assert arc_weights(self.GRAPH, table).tolist() == [2.0, 0.25, 0.5]
+
+    @pytest.mark.parametrize(
+        "weights",
+        [
+            "equal",
+            {},
+            {("a", "b"): 1.0, ("c", "b"): 1.0, ("b", "a"): 0.0},
+            {("a", "b"): 1.0, ("c", "b"): 1.0, ("b", "a"): 1.0, ("a", "c"): 1.0},
+        ],
+    )
+    def test_refused(self, weights: object) -> None:
+        with pytest.raises(InvalidParameter, match="weights"):
+            arc_weights(self.GRAPH, weights)

@@ -1,0 +1,316 @@
+"""Files that are no graph: one line that says where and why; hostile ones neither hang nor read other files."""
+
+from __future__ import annotations
+
+import gzip
+import io
+import os
+import time
+import warnings
+from pathlib import Path
+
+import networkx as nx
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robustness import Digraph, GraphWarning, InvalidGraph, UnreadableTopology
+from robustness.files import FORMATS, decode_topology, encode_topology
+from robustness.files import graph6 as graph6_module
+
+
+def decode_quietly(data: bytes, suffix: str) -> Digraph:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", GraphWarning)
+        return decode_topology(data, suffix)
+
+
+def encode_quietly(graph: object, suffix: str) -> bytes:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", GraphWarning)
+        return encode_topology(graph, suffix)
+
+
+def refusal(data: bytes | str, suffix: str = ".json") -> str:
+    """Return the one-line error that ``data`` earns."""
+    with pytest.raises(UnreadableTopology) as caught:
+        decode_quietly(data.encode() if isinstance(data, str) else data, suffix)
+    message = str(caught.value)
+    assert message.isprintable()
+    assert message.startswith("the data: ")
+    assert len(message) < 400
+    return message
+
+
+class TestBadNodeLinkJson:
+    @pytest.mark.parametrize(
+        ("text", "complaint"),
+        [
+            ("", "line 1, column 1"),
+            ('{"nodes": [\n', "line 2, column 1"),
+            ('{"nodes": [], "edges": []', "line 1, column 26"),
+            ("[]", "is an object"),
+            ("null", "not null"),
+            ("{}", "'nodes', which is missing"),
+            ('{"nodes": []}', "'edges', which is missing"),
+            ('{"nodes": {}, "edges": []}', "'nodes' is a list, not an object"),
+            ('{"nodes": [], "edges": 7}', "'edges' is a list, not a number"),
+            ('{"nodes": [], "edges": [], "links": []}', "keep one"),
+            ('{"nodes": [], "nodes": [], "edges": []}', "'nodes' stands twice"),
+            ('{"nodes": [{"id": 1, "id": 2}], "edges": []}', "'id' stands twice"),
+            ('{"directed": 1, "nodes": [], "edges": []}', "'directed' is true or false"),
+            ('{"nodes": [{}], "edges": []}', "nodes[0]: has no 'id'"),
+            ('{"nodes": ["a"], "edges": []}', "nodes[0]: is an object"),
+            ('{"nodes": [{"id": "a"}, {"id": "a"}], "edges": []}', "nodes[1]: the id 'a' is given twice"),
+            ('{"nodes": [{"id": [1]}, {"id": [1]}], "edges": []}', "nodes[1]: the id (1,) is given twice"),
+            ('{"nodes": [{"id": 1.5}], "edges": []}', "nodes[0]: 'id' is an integer"),
+            ('{"nodes": [{"id": NaN}], "edges": []}', "nodes[0]: 'id' is an integer"),
+            ('{"nodes": [{"id": true}], "edges": []}', "not a truth value"),
+            ('{"nodes": [{"id": null}], "edges": []}', "not null"),
+            ('{"nodes": [{"id": {"a": 1}}], "edges": []}', "not an object"),
+            ('{"nodes": [{"id": [1, null]}], "edges": []}', "nodes[0]: 'id' holds"),
+            ('{"nodes": [{"id": "\\ud800"}], "edges": []}', "surrogate"),
+            ('{"nodes": [{"id": 9223372036854775808}], "edges": []}', "2**63"),
+            ('{"nodes": [{"id": ' + "9" * 5000 + '}], "edges": []}', "number"),
+            ('{"nodes": [{"id": 1}], "edges": [{"source": 1}]}', "edges[0]: has no 'target'"),
+            ('{"nodes": [{"id": 1}], "edges": [{"target": 1}]}', "edges[0]: has no 'source'"),
+            ('{"nodes": [{"id": 1}], "links": [{"source": 1, "target": "1"}]}', "links[0]: '1' is no node"),
+            ('{"nodes": [{"id": 1}], "edges": [[1, 1]]}', "edges[0]: is an object"),
+            ("[" * 100_000, "nested too deeply"),
+            ('{"nodes": [{"id": ' + "[" * 30 + "]" * 30 + '}], "edges": []}', "deep"),
+        ],
+    )
+    def test_says_where_and_why(self, text: str, complaint: str) -> None:
+        assert complaint in refusal(text)
+
+    def test_bytes_that_are_no_text(self) -> None:
+        assert "line 2: byte 0xff is not UTF-8" in refusal(b'{"nodes":\n \xff')
+        assert "is not UTF-8" in refusal(gzip.compress(b"{}"))
+
+    def test_a_byte_order_mark_is_no_error(self) -> None:
+        assert decode_topology(b"\xef\xbb\xbf" + encode_topology(nx.path_graph(2))).n == 2
+
+    @given(st.binary(max_size=60))
+    def test_random_bytes_never_escape_as_another_error(self, data: bytes) -> None:
+        for suffix in FORMATS:
+            try:
+                decode_quietly(data, suffix)
+            except UnreadableTopology as problem:
+                assert str(problem).isprintable()  # noqa: PT017 - some random bytes are a graph
+
+    @pytest.mark.parametrize("suffix", sorted(FORMATS))
+    def test_every_truncation_is_an_answer_or_one_line(self, suffix: str) -> None:
+        data = encode_quietly(nx.relabel_nodes(nx.cycle_graph(4), str), suffix)
+        for length in range(len(data)):
+            try:
+                decode_quietly(data[:length], suffix)
+            except UnreadableTopology as problem:
+                assert str(problem).isprintable()  # noqa: PT017 - cut edge lists are shorter edge lists
+
+    @pytest.mark.parametrize("suffix", sorted(FORMATS))
+    def test_an_empty_file_is_no_graph(self, suffix: str) -> None:
+        refusal(b"", suffix)
+
+
+class TestBadTextFiles:
+    @pytest.mark.parametrize(
+        ("text", "complaint"),
+        [
+            ("a b\nc\n", "line 2: an edge is two labels"),
+            ("1,2\n", "not '1,2'"),
+            ("# nothing\n\n", "none"),
+            ("a b\n\u0000\n", "line 2"),
+        ],
+    )
+    def test_edge_lists(self, text: str, complaint: str) -> None:
+        assert complaint in refusal(text, ".edgelist")
+
+    def test_edge_lists_as_networkx_writes_them(self) -> None:
+        graph = nx.relabel_nodes(nx.petersen_graph(), str)
+        nx.set_edge_attributes(graph, 3, "weight")
+        for data in (True, False, ["weight"]):
+            stream = io.BytesIO()
+            nx.write_edgelist(graph, stream, data=data)
+            assert decode_quietly(stream.getvalue(), ".txt") == Digraph.from_networkx(graph)
+
+    def test_direction_of_an_edge_list(self) -> None:
+        assert decode_quietly(b"a b\n", ".txt").arc_count == 2
+        directed = decode_quietly(b"# directed\r\na b # heard by b\r\n", ".txt")
+        assert list(directed.arcs()) == [(0, 1)]
+        assert nx.parse_edgelist(["# directed", "a b"]).number_of_edges() == 1
+
+    @pytest.mark.parametrize("label", ["a b", "", "#x", "\u2003"])
+    def test_labels_an_edge_list_cannot_hold(self, label: str) -> None:
+        with pytest.raises(InvalidGraph, match="cannot hold the label"):
+            encode_quietly(nx.Graph([("u", label)]), ".edgelist")
+
+    @pytest.mark.parametrize(
+        ("text", "complaint"),
+        [
+            ("0,1\n1\n", "line 2: has 1 columns, but the first row has 2"),
+            ("0,1\n", "square, not 1 x 2"),
+            ("0,x\n1,0\n", "line 1, column 2: 'x' is not a number"),
+            ("0,1\n\n1,nan\n", "line 3, column 2: 'nan' is not a finite number"),
+            ("0,inf\n1,0\n", "line 1, column 2"),
+            ("0,\n1,0\n", "line 1, column 2: ''"),
+            ("\n\n", "at least one row"),
+        ],
+    )
+    def test_csv(self, text: str, complaint: str) -> None:
+        assert complaint in refusal(text, ".csv")
+
+    def test_csv_separators(self) -> None:
+        for text in ("0,1\n1,0\n", "0;1\r\n1;0\r\n", "0 1\n1 0", " 0 , 1 \n1\t0\n\n", "0e0,1e-3\n1.5,0.0"):
+            assert decode_topology(text.encode(), ".csv") == Digraph([0, 1], [(0, 1), (1, 0)])
+
+    @pytest.mark.parametrize(
+        ("data", "suffix", "complaint"),
+        [
+            (b"A_\nA_\n", ".g6", "line 2: a second graph"),
+            (b"A", ".g6", ""),
+            (b"A__", ".g6", ""),
+            (b"A\x07\n", ".g6", "line 1, column 2: byte 0x07"),
+            (b":A_\n", ".g6", "does not start as graph6"),
+            (b"A_\n", ".s6", "does not start as sparse6"),
+            (b"A_\n", ".d6", "does not start as digraph6"),
+            (b":~~~~~~~~\n", ".s6", "announces 68719476735 nodes"),
+            (b"~~~~~~~~\n", ".g6", "announces 68719476735 nodes"),
+            (b"&~~~~~~~~\n", ".d6", "announces 68719476735 nodes"),
+            (b"&D\n", ".d6", "5 nodes need 5 bytes of arcs, and 0 are there"),
+            (b"&A@\n", ".d6", "padding"),
+            (b"~?\n", ".g6", "ends before"),
+        ],
+    )
+    def test_graph6_family(self, data: bytes, suffix: str, complaint: str) -> None:
+        assert complaint in refusal(data, suffix)
+
+    def test_the_announced_size_is_checked_before_anything_is_built(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr(graph6_module, "NODE_LIMIT", 3)
+        assert "announces 4 nodes, and at most 3" in refusal(b":C\n", ".s6")
+
+    @pytest.mark.parametrize(
+        "text", ["graph [", "nonsense", "graph [ node [ ] ]", "graph [ edge [ source 1 target 2 ] ]"]
+    )
+    def test_gml(self, text: str) -> None:
+        refusal(text, ".gml")
+
+    def test_gml_names_nodes_by_label_or_else_by_id(self) -> None:
+        named = 'graph [ node [ id 0 label "a" ] node [ id 1 label "b" ] edge [ source 0 target 1 ] ]'
+        assert decode_quietly(named.encode(), ".gml").labels == ("a", "b")
+        plain = "graph [ directed 1 node [ id 4 ] node [ id 7 ] edge [ source 4 target 7 ] ]"
+        assert decode_quietly(plain.encode(), ".gml") == Digraph([4, 7], [(4, 7)])
+        twice = 'graph [ node [ id 0 label "a" ] node [ id 1 label "a" ] ]'
+        assert "the label 'a' is given twice" in refusal(twice, ".gml")
+        assert "id 1 has no label" in refusal('graph [ node [ id 0 label "a" ] node [ id 1 ] ]', ".gml")
+
+
+def npy(array: np.ndarray, *, allow_pickle: bool = False) -> bytes:
+    stream = io.BytesIO()
+    np.save(stream, array, allow_pickle=allow_pickle)
+    return stream.getvalue()
+
+
+class TestBadArrays:
+    def test_pickles_are_never_loaded(self, tmp_path: Path) -> None:
+        trap = tmp_path / "sprung"
+
+        class Trap:
+            def __reduce__(self) -> tuple[object, tuple[object, ...]]:
+                return (os.mkdir, (str(trap),))
+
+        assert "numbers or truth values, not object" in refusal(npy(np.array([[Trap()]]), allow_pickle=True), ".npy")
+        assert not trap.exists()
+
+    @pytest.mark.parametrize(
+        ("array", "complaint"),
+        [
+            (np.zeros((2, 3)), "square, not 2 x 3"),
+            (np.zeros(4), "square, not 4"),
+            (np.zeros(()), "square, not one number"),
+            (np.zeros((2, 2, 2)), "square, not 2 x 2 x 2"),
+            (np.array([["a"]]), "numbers or truth values"),
+            (np.array([[1j]]), "numbers or truth values"),
+            (np.array([[0.0, np.nan], [0.0, 0.0]]), "row 0, column 1: nan"),
+            (np.array([[0.0, 0.0], [-np.inf, 0.0]]), "row 1, column 0: -inf"),
+        ],
+    )
+    def test_says_what_is_wrong(self, array: np.ndarray, complaint: str) -> None:
+        assert complaint in refusal(npy(array), ".npy")
+
+    def test_nothing_is_allocated_on_the_word_of_a_header(self) -> None:
+        data = npy(np.zeros((2, 2), dtype=np.uint8))
+        huge = data.replace(b"(2, 2), }" + b" " * 14, b"(9999999, 9999999), }  ")
+        assert huge != data
+        assert "99999980000001 bytes, and 4 are there" in refusal(huge, ".npy")
+        assert "there" in refusal(data[:-1], ".npy")
+        assert "there" in refusal(data + b"x", ".npy")
+        assert "header" in refusal(b"\x93NUMPY\x01\x00", ".npy")
+
+
+ENTITY_BOMB = (
+    '<?xml version="1.0"?><!DOCTYPE lolz [<!ENTITY a "aaaaaaaaaa">'
+    + "".join(f'<!ENTITY a{i} "{f"&a{i - 1 or str()};" * 10}">' for i in range(1, 12))
+    + "]><graphml><graph edgedefault='undirected'><node id='&a11;'/></graph></graphml>"
+)
+
+
+class TestHostileXml:
+    @pytest.mark.parametrize("suffix", [".graphml", ".gexf"])
+    @pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "utf-8-sig"])
+    def test_entity_bombs_are_refused_at_once(self, suffix: str, encoding: str) -> None:
+        started = time.perf_counter()
+        assert "DOCTYPE is never read" in refusal(ENTITY_BOMB.encode(encoding), suffix)
+        assert time.perf_counter() - started < 2
+
+    def test_a_declared_encoding_hides_nothing(self) -> None:
+        text = '<?xml version="1.0" encoding="utf-16"?><!DOCTYPE a [<!ENTITY b "c">]><a/>'
+        assert "DOCTYPE" in refusal(text.encode("utf-16"), ".graphml")
+        assert "line 1" in refusal('<?xml version="1.0" encoding="utf-7"?><a/>', ".graphml")
+        assert "line 1" in refusal('<?xml version="1.0" encoding="no-such"?><a/>', ".graphml")
+
+    @pytest.mark.parametrize("suffix", [".graphml", ".gexf"])
+    @pytest.mark.parametrize(
+        "door",
+        [
+            "<!DOCTYPE a SYSTEM '{}'>",
+            "<!DOCTYPE a [<!ENTITY b SYSTEM '{}'>]>",
+            "<!DOCTYPE a [<!ENTITY % b SYSTEM '{}'> %b;]>",
+        ],
+    )
+    def test_no_file_is_read_through_an_entity(self, tmp_path: Path, suffix: str, door: str) -> None:
+        secret = tmp_path / "secret"
+        secret.write_text("do not read")
+        message = refusal(f"<?xml version='1.0'?>{door.format(secret.as_uri())}<a>&b;</a>", suffix)
+        assert "DOCTYPE" in message
+        assert "do not" not in message
+
+    @pytest.mark.parametrize("suffix", [".graphml", ".gexf"])
+    def test_deep_nesting_is_refused(self, suffix: str) -> None:
+        assert "nested more than 100 deep" in refusal("<a>" * 200_000, suffix)
+
+    @pytest.mark.parametrize("suffix", [".graphml", ".gexf"])
+    @pytest.mark.parametrize(
+        ("body", "complaint"),
+        [
+            ("<node/>", "line 2: <node> has no 'id'"),
+            ("<node id='a'/><node id='a'/>", "node 'a' is given twice"),
+            ("<node id='a'/>\n<edge source='a'/>", "line 3: <edge> has no 'target'"),
+            ("<node id='a'/><edge source='a' target='b'/>", "line 2: <edge> joins 'b', which is no node"),
+            ("<node id='a'>", "line 2, column 16: mismatched tag"),
+            ("</graph><graph>", "line 2: a second <graph>"),
+        ],
+    )
+    def test_says_which_line(self, suffix: str, body: str, complaint: str) -> None:
+        head = '<graphml xmlns="http://graphml.graphdrawing.org/xmlns"><graph edgedefault="directed">\n'
+        assert complaint in refusal(f"{head}{body}</graph></graphml>", suffix)
+
+    @pytest.mark.parametrize("suffix", [".graphml", ".gexf"])
+    def test_other_xml_is_no_graph(self, suffix: str) -> None:
+        refusal("<svg/>", suffix)
+
+    @pytest.mark.parametrize("suffix", [".graphml", ".gexf"])
+    @pytest.mark.parametrize("label", ["\x00", "\x1b", "\n", "\ufffe"])
+    def test_labels_that_xml_cannot_hold(self, suffix: str, label: str) -> None:
+        with pytest.raises(InvalidGraph, match="cannot hold the label"):
+            encode_quietly(nx.Graph([("u", label)]), suffix)

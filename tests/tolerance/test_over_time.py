@@ -1,0 +1,145 @@
+"""Time-varying networks: windows promise, traps of the union refute, and the simulator splits the sequence itself."""
+
+from __future__ import annotations
+
+import json
+import random
+
+import networkx as nx
+import pytest
+from click.testing import CliRunner
+
+import robustness as rb
+from cli.exit_codes import ExitCode
+from cli.main import robustness
+from robustness.errors import InvalidParameter
+from robustness.simulation import as_topology
+from robustness.threat_models import Standing, certify_tolerance, tolerance
+from robustness.time_varying import TimeVaryingGraph
+from tests.oracles import brute_profile
+from tests.tolerance.brute_force import has_trap
+
+
+def spread(graph: nx.Graph, steps: int, period: int | None) -> TimeVaryingGraph:
+    """Return the links of a graph dealt out over ``steps`` steps."""
+    links = sorted(graph.edges())
+    parts = []
+    for k in range(steps):
+        part = nx.empty_graph(len(graph), create_using=type(graph))
+        part.add_edges_from(links[k::steps])
+        parts.append(part)
+    return TimeVaryingGraph(parts, period=period)
+
+
+def drawn(count: int) -> list[tuple[TimeVaryingGraph, int]]:
+    draw = random.Random(4)
+    found = []
+    for _ in range(count):
+        n, steps = draw.choice((4, 5, 6)), draw.choice((1, 2, 3))
+        graph = nx.gnp_random_graph(n, draw.uniform(0.6, 1), seed=draw.randrange(2**31), directed=draw.random() < 0.5)
+        found.append((spread(graph, steps, draw.choice((None, steps))), draw.choice((1, 2, 3))))
+    return found
+
+
+def promised(sequence: TimeVaryingGraph, tau: int) -> int:
+    """Return the largest f with a jointly (2f+1)-robust window of at most tau steps, union by union; -1 without."""
+    best = -1
+    for f in range(sequence.n):
+        for length in range(1, tau + 1):
+            starts = sequence.window_starts(length)
+            unions = [sequence.union(start, length) for start in starts]
+            if unions and all(brute_profile(union).get(2 * f + 1, 0) >= 1 for union in unions):
+                best = f
+    return best
+
+
+@pytest.mark.parametrize("part", range(2))
+def test_as_defined(part: int) -> None:
+    for sequence, tau in drawn(24)[part::2]:
+        union = sequence.union(0, len(sequence))
+        table = tolerance(sequence, tau=tau)
+        assert list(table) == ["delayed", "delayed-local"]
+        for result in table.results:
+            trapped = next(f for f in range(10) if has_trap(union.in_masks, f, result.threat.local))
+            assert (result.guaranteed, result.refuted) == (promised(sequence, tau), trapped)
+            assert result.over_time
+            assert all(result.standing(f) is Standing.OPEN for f in result.between)
+
+
+def test_the_attack_splits_the_sequence_itself() -> None:
+    for sequence, tau in drawn(8):
+        for result in tolerance(sequence, tau=tau).results:
+            attack = result.attack
+            assert attack is not None
+            if sequence.period is None:
+                sequence = TimeVaryingGraph([sequence.graph_at(k) for k in range(len(sequence))], period=len(sequence))
+            assert attack.run(30, network=as_topology(sequence, 30)).exact
+
+
+def test_more_tau_promises_more() -> None:
+    sequence = spread(nx.complete_graph(8), 4, 4)
+    assert [tolerance(sequence, "delayed", tau=tau).guaranteed for tau in (1, 2, 3, 4)] == [-1, 0, 1, 1]
+    (first, *_) = tolerance(sequence, "delayed", tau=3).reasons
+    assert "jointly 3-robust over every 3 steps, within tau = 3" in first.statement
+    assert "corollary on time-varying networks" in first.theorem
+
+
+def test_a_finite_trace_says_that_it_ends() -> None:
+    (first, *_) = tolerance(spread(nx.complete_graph(6), 2, None), "delayed", tau=2).reasons
+    assert "nothing is said beyond its last step" in first.statement
+
+
+def test_certificates_are_about_the_union_s_trap_only() -> None:
+    result = tolerance(spread(nx.complete_graph(6), 2, 2), "delayed", tau=2)
+    found = certify_tolerance(result)
+    assert found.guaranteed is None
+    assert found.refuted is not None
+
+
+class TestMisuse:
+    sequence = spread(nx.complete_graph(4), 2, 2)
+
+    @pytest.mark.parametrize("tau", [None, 0, -1, 1.5, True])
+    def test_tau(self, tau: object) -> None:
+        with pytest.raises(InvalidParameter, match="needs tau"):
+            tolerance(self.sequence, tau=tau)  # type: ignore[call-overload]
+
+    def test_tau_of_a_fixed_graph(self) -> None:
+        with pytest.raises(InvalidParameter, match="tau belongs to a time-varying network"):
+            tolerance(nx.path_graph(3), tau=1)
+
+    def test_models_without_a_theorem(self) -> None:
+        with pytest.raises(InvalidParameter, match="delayed or delayed-local"):
+            tolerance(self.sequence, "byzantine", tau=1)
+
+
+class TestCommand:
+    links = json.dumps({"nodes": [0, 1, 2, 3], "period": 2, "steps": [[[0, 1], [1, 2]], [[2, 3], [3, 0]]]}).encode()
+
+    def run(self, *arguments: str) -> tuple[int, str]:
+        done = CliRunner().invoke(robustness, ["tolerance", "-", *arguments], input=self.links)
+        return done.exit_code, done.stdout
+
+    def test_json(self) -> None:
+        code, text = self.run("--tau", "2", "--json")
+        assert code == ExitCode.DONE
+        assert [model["model"] for model in json.loads(text)["models"]] == ["delayed", "delayed-local"]
+
+    @pytest.mark.parametrize(("f", "code"), [(0, ExitCode.DONE), (1, ExitCode.REFUTED)])
+    def test_gate(self, f: int, code: ExitCode) -> None:
+        assert self.run("--tau", "2", "--require", str(f))[0] == code
+
+    def test_files(self, tmp_path: object) -> None:
+        assert self.run("--tau", "2", "-o", str(tmp_path))[0] == ExitCode.DONE
+
+    def test_usage(self) -> None:
+        assert self.run("--period", "2")[0] == ExitCode.USAGE
+        assert self.run("--tau", "2", "--model", "byzantine")[0] == ExitCode.USAGE
+
+
+def test_an_undecided_window_promises_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    undecided = rb.JointResult(rb.Verdict.UNDECIDED, 1, 1, reason="the time limit was reached")
+    monkeypatch.setattr("robustness.threat_models.over_time.check_joint_robustness", lambda *_, **__: undecided)
+    result = tolerance(spread(nx.complete_graph(5), 2, 2), "delayed", tau=2)
+    assert result.guaranteed == -1
+    assert result.standing(0) is Standing.UNDECIDED

@@ -1,0 +1,137 @@
+"""The audit page is what its command writes; each check can fail; drawings show what they say."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import networkx as nx
+import pytest
+
+import robustness as rb
+from robustness.constructions.lemma_1 import STATEMENTS
+from robustness.paper_audit import Claim, about_graphs, about_runs, census
+from robustness.paper_audit.__main__ import main
+from robustness.paper_audit.claims import Outcome, failing, holding
+from robustness.paper_audit.drawing import svg
+from robustness.paper_audit.page import census_table
+from robustness.threat_models import tolerance
+
+DOCS = Path(__file__).parents[2] / "docs"
+PAGE = (DOCS / "paper-audit.md").read_text(encoding="utf-8")
+ALL = (*about_graphs.CLAIMS, *about_runs.CLAIMS)
+
+#: What did not hold when the page was made.
+WRONG = {
+    "X are the nodes with at least f+1 incoming links",
+    "r and s below n; item (v) of Lemma 1 lets s be n",
+    "(f+1,f+1)-robustness suffices under delays (nobody says so; the gap)",
+    "every graph is either (2f+1)-robust or has a trap: the gap would be closed",
+    "its least degree is 2f+1",
+    "it is (f+1,f+1)-robust",
+    "the malicious vehicles are those of G2",
+    "large random graphs become robust",
+    "checking robustness is difficult",
+    "x_i - x_j tends to delta_ij; x_j - x_i tends to delta_ij",
+    "vehicle 4 sends 2 + kTr and 200 as positions",
+    "T = 0.01 and alpha = 2, 3, 10 lie where the theorem holds (needed, not said)",
+    "when all vehicles see for themselves the malicious one cannot prevent agreement",
+}
+
+
+def row(claim: Claim) -> list[str]:
+    """Return the cells of a claim's row on the page."""
+    start = f"| {claim.place} | {'paper' if claim.is_paper else 'ours'} | {claim.text} | "
+    (line,) = [line for line in PAGE.splitlines() if line.startswith(start)]
+    return [cell.strip() for cell in line.strip("|").split(" | ")]
+
+
+@pytest.mark.parametrize("claim", ALL, ids=lambda claim: f"{claim.place}: {claim.text[:40]}")
+def test_every_claim_is_on_the_page_with_its_result(claim: Claim) -> None:
+    assert ("holds" == row(claim)[3]) == (claim.text not in WRONG)
+
+
+@pytest.mark.parametrize("claim", about_graphs.CLAIMS, ids=lambda claim: f"{claim.place}: {claim.text[:40]}")
+def test_claims_about_graphs_come_out_as_the_page_says(claim: Claim) -> None:
+    outcome, cells = claim.check(), row(claim)
+    assert cells[3].strip("*") == outcome.result
+    assert cells[4] == outcome.how
+    if outcome.counterexample is not None:
+        (number,) = re.findall(r"\[drawn\]\(#audit-(\d+)\)", cells[5])
+        drawn = (DOCS / "figures" / "audit" / f"{int(number):02}.svg").read_text(encoding="utf-8")
+        assert drawn == svg(outcome.counterexample, outcome.sets)
+
+
+@pytest.mark.parametrize(
+    "claim",
+    [claim for claim in about_runs.CLAIMS if not re.search(r"Setting|sufficiency|omissive", claim.place)],
+    ids=lambda claim: f"{claim.place}: {claim.text[:40]}",
+)
+def test_quick_claims_about_runs_come_out_as_the_page_says(claim: Claim) -> None:
+    outcome, cells = claim.check(), row(claim)
+    note = cells[5] if len(cells) > 5 else ""
+    assert (cells[3].strip("*"), cells[4], note) == (outcome.result, outcome.how, outcome.note)
+
+
+def test_every_statement_of_lemma_1_is_on_the_page() -> None:
+    for statement in STATEMENTS:
+        assert f"| {statement.item} | {'paper' if statement.is_paper else 'ours'} | {statement.text} |" in PAGE
+
+
+def test_the_census_of_the_page_up_to_seven_nodes() -> None:
+    for line in census_table(census(7)).splitlines():
+        assert line in PAGE.splitlines()
+
+
+@pytest.mark.slow
+def test_the_command_writes_what_is_committed(tmp_path: Path) -> None:
+    main([str(tmp_path)])
+    assert (tmp_path / "paper-audit.md").read_text(encoding="utf-8") == PAGE
+    written = {path.name: path.read_text(encoding="utf-8") for path in (tmp_path / "figures" / "audit").iterdir()}
+    committed = {path.name: path.read_text(encoding="utf-8") for path in (DOCS / "figures" / "audit").iterdir()}
+    assert written == committed
+
+
+class TestChecks:
+    """A check that cannot fail checks nothing."""
+
+    def test_a_false_claim_fails_on_a_smallest_graph(self) -> None:
+        found = holding(lambda graph: "three nodes" if graph.n == 3 else None)
+        assert found.result == "fails"
+        assert found.counterexample is not None
+        assert found.counterexample.n == 3
+
+    def test_a_claim_called_false_that_holds_is_said_to_hold(self) -> None:
+        assert failing(lambda _: None, "nothing").result == "holds"
+
+    def test_the_battery_splits_what_can_be_split(self) -> None:
+        counts = about_runs.battery(rb.Digraph.from_networkx(nx.path_graph(4)), 1)
+        assert counts["split"] > 0
+        assert sum(counts.values()) == 4 * len(about_runs.STRONGEST) * len(about_runs.SCHEDULES)
+
+    def test_the_battery_does_not_split_what_is_promised(self) -> None:
+        counts = about_runs.battery(rb.Digraph.from_networkx(nx.complete_graph(5)), 1)
+        assert counts["split"] == counts["undecided"] == 0
+
+    def test_outcomes_name_a_result_of_the_legend(self) -> None:
+        legend = set(re.findall(r"^(\w[\w ]+)\n: ", PAGE, flags=re.MULTILINE))
+        assert {row(claim)[3].strip("*") for claim in ALL} <= legend
+        assert isinstance(ALL[0].check(), Outcome)
+
+
+class TestDrawing:
+    def test_links_arrows_and_colours(self) -> None:
+        graph = nx.DiGraph([(0, 1), (1, 0), (1, 2)])
+        root = ET.fromstring(svg(rb.Digraph.from_networkx(graph)))  # noqa: S314 - our own
+        lines = [each for each in root if each.tag.endswith("line")]
+        assert sorted("marker-end" in each.attrib for each in lines) == [False, True]
+        assert sum(each.tag.endswith("circle") for each in root) == 3
+
+    def test_sets_are_coloured(self) -> None:
+        result = tolerance(nx.wheel_graph(5), "delayed")
+        text = svg(result.graph, result.attack_sets)
+        assert [text.count(color) for color in ("#c0392b", "#2471a3", "#1e8449")] == [1, 2, 2]
+
+    def test_labels_are_escaped(self) -> None:
+        assert "&lt;b&gt;" in svg(rb.Digraph(["<b>", "a"], [("a", "<b>")]))
