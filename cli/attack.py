@@ -24,9 +24,12 @@ from cli.simulate import exit_code
 if TYPE_CHECKING:
     from robustness.simulation.attacks import Attack
 
-__all__ = ["SCHEMA", "command"]
+__all__ = ["MODELS", "SCHEMA", "command"]
 
 SCHEMA = "robustness/attack-result/1"
+
+# Written out so that --help need not import the library; a test compares them.
+MODELS = ("malicious", "malicious-local", "byzantine", "delayed", "delayed-local")
 
 
 @click.command("attack")
@@ -34,10 +37,10 @@ SCHEMA = "robustness/attack-result/1"
 @click.option("-f", "f", type=click.IntRange(min=0), default=1, show_default=True, help="How many nodes may lie.")
 @click.option(
     "--model",
-    type=click.Choice(("malicious", "delayed", "byzantine")),
+    type=click.Choice(MODELS),
     default="malicious",
     show_default=True,
-    help="Synchronous; with delays (the two-face attack); or different lies to different neighbours.",
+    help="One lie for all; different lies (byzantine); or delays that show two faces. -local: F around every node.",
 )
 @click.option("--steps", type=click.IntRange(min=1), default=1000, show_default=True, help="How long it is played.")
 @click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE", help="Write it.")

@@ -1,23 +1,40 @@
-"""From a network to an attack: search for the evidence, then make the attack of it."""
+"""From a network to an attack: search for the evidence, then make the attack of it.
+
+Without delays and with everybody told the same, an attack is a violation of (f+1,f+1)-robustness; under every other
+model it is a solution of :mod:`robustness.trap_search`, which looks for M, S1 and S2 together in one search.
+"""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import combinations
+from types import MappingProxyType
 from typing import Any
 
 from robustness.checking import check_rs_robustness
-from robustness.constructions.traps import without
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.results import Verdict
 from robustness.simulation.attacks import Attack, attack_from_trap, attack_from_violation
+from robustness.trap_search import find_trap
 
 __all__ = ["ATTACK_MODELS", "Finding", "find_attack"]
 
-#: What the attacker may do: lie to all alike; the same with delays; lie to each differently.
-ATTACK_MODELS = ("malicious", "delayed", "byzantine")
+#: What the attacker may do, by the names of :mod:`robustness.threat_models`: lie to all alike, to each neighbour
+#: differently, or to all alike with delays; and whether the bound is in all or around every normal node.
+ATTACK_MODELS = ("malicious", "malicious-local", "byzantine", "delayed", "delayed-local")
+
+#: For every model but the first: how many faces a liar has, whether the bound is local, the fault model, and whether
+#: "no attack of this kind" is all that agreement needs.
+_KINDS: Mapping[str, tuple[int, bool, str, bool]] = MappingProxyType(
+    {
+        "malicious-local": (1, True, "malicious-local", False),
+        "byzantine": (2, False, "byzantine", True),
+        "delayed": (2, False, "malicious", False),
+        "delayed-local": (2, True, "malicious-local", False),
+    }
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,11 +74,13 @@ def find_attack(
     f : int
         At least 0.
     model : str
-        ``"malicious"``: synchronous, f-total; decided by (f+1,f+1)-robustness. ``"delayed"``: with delays, where a
-        trap is an attack as well; undecided when there is none and the network is not (2f+1)-robust. ``"byzantine"``:
-        synchronous, decided by traps.
+        ``"malicious"``: synchronous, f-total; decided by (f+1,f+1)-robustness. ``"byzantine"``: synchronous, f-total;
+        decided by traps. ``"delayed"``: with delays, f-total; a trap splits, (2f+1)-robustness promises agreement, and
+        between the two the case is open. ``"malicious-local"`` and ``"delayed-local"``: with at most f malicious
+        in-neighbours of every normal node; likewise open in between.
     algorithm, time_limit, jobs, seed
-        As for :func:`robustness.check_rs_robustness`; the time limit is for everything together.
+        As for :func:`robustness.check_rs_robustness`; the time limit is for everything together, and the algorithm is
+        used for checks of robustness (traps have one of their own).
 
     Returns
     -------
@@ -69,10 +88,10 @@ def find_attack(
 
     Notes
     -----
-    At most one exact check for the violation, and one for each of the ``sum C(n, m), m <= f`` sets of a trap.
+    At most one exact check of robustness and one exact search for a trap; both exponential in the worst case.
 
     >>> import networkx as nx
-    >>> [find_attack(nx.wheel_graph(5), 1, model).outcome for model in ATTACK_MODELS]
+    >>> [find_attack(nx.wheel_graph(5), 1, model).outcome for model in ("malicious", "byzantine", "delayed")]
     ['agreement', 'split', 'split']
     """
     graph = as_digraph(G)
@@ -84,36 +103,50 @@ def find_attack(
         return Finding(None, "agreement", "fewer than two nodes: nobody to disagree with")
     deadline = float("inf") if time_limit is None else time.monotonic() + time_limit
     options: dict[str, Any] = {"algorithm": algorithm, "jobs": jobs, "seed": seed}
+    if model == "malicious":
+        return _find_violation(graph, f, deadline, options)
+    return _find_by_search(graph, f, model, deadline, options)
+
+
+def _find_violation(graph: Digraph, f: int, deadline: float, options: dict[str, Any]) -> Finding:
+    """Return the attack of a violating pair, or that there is none."""
     # A violating pair leaves a node of each set unreachable, so beyond s = n the third condition says no more.
-    result = check_rs_robustness(graph, f + 1, min(f + 1, graph.n), time_limit=time_limit, **options)
+    result = check_rs_robustness(graph, f + 1, min(f + 1, graph.n), time_limit=_left(deadline), **options)
     if result.verdict is Verdict.UNDECIDED:
         return Finding(None, "undecided", f"({f + 1},{f + 1})-robustness was not decided: raise the time limit")
-    if result.witness is not None:
-        attack = attack_from_violation(graph, f, result.witness)
-        return Finding(attack, "split", f"not ({f + 1},{f + 1})-robust: {attack.story()}")
-    if model == "malicious":
+    if result.witness is None:
         return Finding(None, "agreement", f"({f + 1},{f + 1})-robust: f = {f} malicious nodes do not split it")
-    strong = check_rs_robustness(graph, 2 * f + 1, time_limit=_left(deadline), **options)
-    if strong.verdict is Verdict.ROBUST:
-        return Finding(None, "agreement", f"{2 * f + 1}-robust: f = {f} nodes do not split it, two-faced or not")
-    return _find_two_faced(graph, f, model, deadline, options)
+    attack = attack_from_violation(graph, f, result.witness)
+    return Finding(attack, "split", f"not ({f + 1},{f + 1})-robust: {attack.story()}")
 
 
-def _find_two_faced(graph: Digraph, f: int, model: str, deadline: float, options: dict[str, Any]) -> Finding:
-    """Return the attack of a trap, or what its absence proves."""
-    for size in range(f + 1):
-        for chosen in combinations(range(graph.n), size):
-            rest = without(graph, frozenset(chosen))
-            result = check_rs_robustness(rest, f + 1, time_limit=_left(deadline), **options)
-            if result.witness is not None:
-                faults = "byzantine" if model == "byzantine" else "malicious"
-                attack = attack_from_trap(graph, f, graph.labels_of(chosen), *result.witness, model=faults)
-                return Finding(attack, "split", f"trapped: {attack.story()}")
-            if result.verdict is Verdict.UNDECIDED or time.monotonic() > deadline:
-                return Finding(None, "undecided", f"no trap for f = {f} found in time: raise the time limit")
-    if model == "byzantine":
+def _find_by_search(graph: Digraph, f: int, model: str, deadline: float, options: dict[str, Any]) -> Finding:
+    """Return the attack that the trap search finds, or what its absence proves."""
+    faces, local, faults, exact = _KINDS[model]
+    robust = None
+    if not exact:
+        # A promise of agreement spares the search; where it takes long, the search gets half of the time.
+        half = None if deadline == float("inf") else max(deadline - time.monotonic(), 0) / 2
+        robust = check_rs_robustness(graph, 2 * f + 1, time_limit=half, **options).verdict
+        if robust is Verdict.ROBUST:
+            return Finding(None, "agreement", f"{2 * f + 1}-robust: f = {f} nodes do not split it, two-faced or not")
+    found = find_trap(graph, f, faces=faces, local=local, time_limit=_left(deadline), seed=options["seed"])
+    if found.exists is None:
+        return Finding(None, "undecided", f"whether f = {f} nodes split it was not decided: raise the time limit")
+    if found.exists:
+        sets = found.M, found.S1, found.S2
+        if faces == 1:
+            attack = attack_from_violation(graph, f, sets[1:], malicious=sets[0], model=faults)
+        else:
+            attack = attack_from_trap(graph, f, *sets, model=faults)
+        return Finding(attack, "split", f"{'trapped' if faces == 2 else 'held apart'}: {attack.story()}")
+    if exact:
         return Finding(None, "agreement", f"{f + 1}-robust without any {f} nodes: {f} Byzantine ones do not split it")
-    return Finding(None, "undecided", f"no trap, but not proven {2 * f + 1}-robust: the theory leaves this case open")
+    what = "trap" if faces == 2 else "violation"
+    known = "not" if robust is Verdict.NOT_ROBUST else "not known to be"
+    return Finding(
+        None, "undecided", f"no {what} for f = {f}, but {known} {2 * f + 1}-robust: the theory leaves this case open"
+    )
 
 
 def _left(deadline: float) -> float | None:

@@ -11,6 +11,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 import robustness as rb
+from cli import attack as attack_command
 from cli import simulate as simulate_command
 from cli.exit_codes import ExitCode
 from cli.main import robustness
@@ -18,6 +19,7 @@ from robustness.files import encode_topology
 from robustness.simulation import ADVERSARIES, EXPERIMENTS, RULES, SCHEDULES
 from robustness.simulation.finding import ATTACK_MODELS
 from robustness.simulation.models import FAULT_MODELS
+from robustness.threat_models import THREAT_MODELS
 
 WHEEL, CYCLE, COMPLETE = (
     encode_topology(graph) for graph in (nx.wheel_graph(5), nx.cycle_graph(6), nx.complete_graph(5))
@@ -40,7 +42,7 @@ def test_the_choices_are_those_of_the_library() -> None:
     assert sorted(simulate_command._SCHEDULES) == sorted(SCHEDULES)
     assert sorted(simulate_command._ADVERSARIES) == sorted([*ADVERSARIES, "auto"])
     assert sorted(simulate_command._EXPERIMENTS) == sorted(EXPERIMENTS)
-    assert simulate_command._MODELS[0] == ATTACK_MODELS[0]
+    assert attack_command.MODELS == ATTACK_MODELS == tuple(THREAT_MODELS)
 
 
 class TestSimulate:
@@ -74,6 +76,8 @@ class TestSimulate:
             (WHEEL, (), "agreement"),
             (WHEEL, ("--schedule", "delayed"), "split"),
             (WHEEL, ("--model", "byzantine", "--rule", "w-msr"), "split"),
+            (WHEEL, ("--model", "malicious-local", "--schedule", "delayed"), "split"),
+            (WHEEL, ("--model", "byzantine-local"), "split"),
             (CYCLE, (), "split"),
             (CYCLE, ("--rule", "dp-msr"), "split"),
             (CYCLE, ("-f", "0"), "agreement"),
@@ -217,6 +221,9 @@ class TestAttack:
             (WHEEL, "malicious", 1, "agreement"),
             (WHEEL, "delayed", 1, "split"),
             (WHEEL, "byzantine", 1, "split"),
+            (WHEEL, "delayed-local", 1, "split"),
+            (CYCLE, "malicious-local", 1, "split"),
+            (COMPLETE, "delayed-local", 1, "agreement"),
             (COMPLETE, "delayed", 1, "agreement"),
             (COMPLETE, "malicious", 3, "split"),
         ],
