@@ -119,7 +119,8 @@ def command(
     attack refutes it, 30 when neither is known. Without: 0, or 30 when a limit left something undecided.
 
     With -o, DIR/graph.json is the canonical graph, DIR/MODEL-guaranteed-F.cert and DIR/MODEL-refuted-F.cert are
-    certificates, and DIR/MODEL-attack.json is what 'simulate --attack' reads.
+    certificates, and DIR/MODEL-attack.json is what 'simulate --attack' reads. With --tau, guaranteed
+    certificates are about DIR/sequence.json, all else is about the union of the steps, DIR/graph.json.
     """
     if tau is None and period is not None:
         raise click.UsageError("--period belongs to a sequence: give --tau as well.")
@@ -135,7 +136,7 @@ def command(
         try:
             report = interruptibly(work, timeout, line.tick)
         except Overrun:
-            report = _nothing(graph, model, required, time.perf_counter() - started)
+            report = _nothing(network, graph, model, tau, required, time.perf_counter() - started)
     if output is not None:
         _write_evidence(console, report, output, timeout, jobs, seed)
     if as_json:
@@ -187,9 +188,13 @@ def _write_evidence(
     """Write the canonical graph, and for each model its certificates and its attack."""
     from robustness.files import replace_file
     from robustness.threat_models import ToleranceCertificates, certify_tolerance
+    from robustness.time_varying import canonical_sequence
 
     folder.mkdir(parents=True, exist_ok=True)
     replace_file(folder / "graph.json", report.graph.canonical_bytes())
+    sequence = report.table.results[0].sequence
+    if sequence is not None:
+        replace_file(folder / "sequence.json", canonical_sequence(sequence))
     for result in report.table.results:
 
         def work(result: ToleranceResult = result) -> ToleranceCertificates:
@@ -205,24 +210,34 @@ def _write_evidence(
                 path = folder / f"{result.model}-{what}-{f}.cert"
                 replace_file(path, data)
                 console.talk(f"wrote {path} ({len(data):,} bytes, verified)")
-            elif f is not None and f >= 0 and result.over_time:
-                console.talk(f"no certificate of {result.model}, f = {f} {what}: 'joint' writes them for sequences")
             elif f is not None and f >= 0:
-                console.talk(f"no certificate of {result.model}, f = {f} {what}: too large, or a limit was reached")
-        # A local violation has malicious nodes of its own, for which an attack file has no place yet.
-        if result.attack is not None and result.model != "malicious-local":
+                why = "too large, or a limit was reached" if report.graph.n >= 2 else "nobody can disagree"
+                console.talk(f"no certificate of {result.model}, f = {f} {what}: {why}")
+        if result.attack is not None:
             text = json.dumps(result.attack.as_dict(), indent=1) + "\n"
             replace_file(folder / f"{result.model}-attack.json", text.encode())
 
 
-def _nothing(graph: Digraph, model: str | None, required: int | None, seconds: float) -> Report:
+def _nothing(
+    network: Digraph | TimeVaryingGraph,
+    graph: Digraph,
+    model: str | None,
+    tau: int | None,
+    required: int | None,
+    seconds: float,
+) -> Report:
     """Return the report of work that did not keep its time limit: nothing is claimed."""
     from robustness.threat_models.models import THREAT_MODELS
+    from robustness.threat_models.over_time import MODELS_OVER_TIME
     from robustness.threat_models.results import Reason, Standing, ToleranceResult, ToleranceTable
+    from robustness.time_varying import TimeVaryingGraph
 
     reason = Reason(Standing.UNDECIDED, 0, "nothing was decided", "none: the time limit was reached", "none")
-    names = MODELS if model is None else (model,)
-    results = tuple(ToleranceResult(graph, THREAT_MODELS[name], -1, None, (reason,)) for name in names)
+    sequence = network if isinstance(network, TimeVaryingGraph) else None
+    names = (model,) if model is not None else MODELS if sequence is None else MODELS_OVER_TIME
+    results = tuple(
+        ToleranceResult(graph, THREAT_MODELS[name], -1, None, (reason,), sequence=sequence, tau=tau) for name in names
+    )
     return Report(graph, ToleranceTable(graph, results), dict.fromkeys(names), required, seconds)
 
 

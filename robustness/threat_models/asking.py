@@ -108,7 +108,7 @@ def tolerance(
     over = over_time if isinstance(decisions, JointDecisions) else threat_model_named
     results = tuple(judge(decisions, over(name)) for name in names)
     if isinstance(decisions, JointDecisions):
-        results = tuple(replace(result, over_time=True) for result in results)
+        results = tuple(replace(result, sequence=decisions.sequence, tau=decisions.tau) for result in results)
     return results[0] if model is not None else ToleranceTable(decisions.graph, results)
 
 

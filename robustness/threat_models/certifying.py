@@ -6,6 +6,7 @@ what                        the certificate proves                              
 guaranteed, malicious       (f+1,f+1)-robust                                                     ``verify``
 guaranteed, byzantine       no trap for f: (2f+1)-robust, or (f+1)-robust without any f nodes    ``verify_tolerance``
 guaranteed, all others      (2f+1)-robust                                                        ``verify``
+guaranteed, over time       jointly (2f+1)-robust over some l <= tau steps                       ``verify_joint``
 refuted, malicious          not (f+1,f+1)-robust                                                 ``verify``
 refuted, all others         the sets M, S1, S2 of the attack                                     ``verify_tolerance``
 ==========================  ===================================================================  =====================
@@ -45,8 +46,8 @@ class ToleranceCertificates:
     """The certificates of one result; each has been verified by the kernel.
 
     ``None`` for what is not claimed, or where a limit stopped the work, or (byzantine) where there are too many sets M.
-    For a time-varying network ``guaranteed`` is None: joint robustness has certificates of its own, see
-    :mod:`robustness.time_varying`; ``refuted`` is about the union of the steps.
+    For a time-varying network ``guaranteed`` is a certificate of joint robustness, bound to
+    :func:`robustness.time_varying.canonical_sequence`, and ``refuted`` is about the union of the steps.
     """
 
     guaranteed: bytes | None
@@ -74,8 +75,8 @@ def certify_tolerance(
     """
     work = _Work(result.graph, None if time_limit is None else time.monotonic() + time_limit, jobs, seed)
     guaranteed = None
-    if result.graph.n >= 2 and result.guaranteed >= 0 and not result.over_time:
-        guaranteed = work.promise(result)
+    if result.graph.n >= 2 and result.guaranteed >= 0:
+        guaranteed = work.promise_over_time(result) if result.over_time else work.promise(result)
     return ToleranceCertificates(guaranteed, _refutation(result))
 
 
@@ -99,9 +100,26 @@ class _Work:
             return _tolerance(self.graph, f, 2, "total", "together", {"kind": "robust"}, twice)
         return self.removals(f)
 
+    def promise_over_time(self, result: ToleranceResult) -> bytes | None:
+        """Return a certificate that the sequence is jointly (2f+1)-robust, over the smallest number of steps."""
+        from robustness.time_varying import certify_joint
+
+        left = self.left()
+        if result.sequence is None or (left is not None and left <= 0):
+            return None
+        r = 2 * result.guaranteed + 1
+        found, certificate = certify_joint(result.sequence, r, time_limit=left, jobs=self.jobs, seed=self.seed)
+        if certificate is not None and (found.window is None or result.tau is None or found.window > result.tau):
+            raise InternalError(f"{result} was certified as {found.summary()}: please report")
+        return certificate
+
+    def left(self) -> float | None:
+        """Return the seconds that are left, None for no limit."""
+        return None if self.deadline is None else self.deadline - time.monotonic()
+
     def robust(self, graph: Digraph, r: int, s: int = 1) -> bytes | None:
         """Return an ordinary certificate of (r,s)-robustness, or None when it is not robust or the time is up."""
-        left = None if self.deadline is None else self.deadline - time.monotonic()
+        left = self.left()
         if left is not None and left <= 0:
             return None
         found = certify(graph, r, s, time_limit=left, jobs=self.jobs, seed=self.seed)

@@ -28,7 +28,7 @@ from types import MappingProxyType
 from robustness.errors import InvalidParameter
 from robustness.trap_search.question import Question
 
-__all__ = ["THREAT_MODELS", "ThreatModel", "threat_model_named"]
+__all__ = ["SECOND_ORDER_GAINS", "THREAT_MODELS", "ThreatModel", "threat_model_named"]
 
 #: What promises agreement.
 RS_ROBUST, TWICE_ROBUST, NO_TRAP = "(f+1,f+1)-robust", "(2f+1)-robust", "no trap"
@@ -71,6 +71,9 @@ class ThreatModel:
         return Question(f, self.two_faces, self.local)
 
 
+#: Where the theorems on second-order vehicles hold; the source paper leaves it unsaid, its source asks for it.
+SECOND_ORDER_GAINS = "for weights that add up to at most 1 and gains with 1 + T²/2 <= alpha T <= 2 - T²/2"
+
 _SYNCHRONOUS_TRAP = (
     "Vaidya, Tseng and Liang 2012: each malicious node tells one group one value and the other group another"
 )
@@ -88,7 +91,7 @@ THREAT_MODELS: Mapping[str, ThreatModel] = MappingProxyType(
                 "malicious",
                 "updates in step, without delays; at most f malicious nodes in all, each telling everybody the same",
                 RS_ROBUST,
-                "LeBlanc, Zhang, Koutsoukos and Sundaram 2013, Theorem 1 (W-MSR; DP-MSR inside its range of gains)",
+                f"LeBlanc, Zhang, Koutsoukos and Sundaram 2013, Theorem 1 (W-MSR; DP-MSR {SECOND_ORDER_GAINS})",
                 "LeBlanc et al. 2013, Theorem 1, necessity: X_S1 and X_S2 are malicious and stand still",
                 two_faces=False,
                 local=False,
@@ -97,7 +100,8 @@ THREAT_MODELS: Mapping[str, ThreatModel] = MappingProxyType(
             ),
             ThreatModel(
                 "malicious-local",
-                "the same, but up to f malicious nodes around every normal vehicle, however many in all",
+                "updates in step, without delays; up to f malicious nodes around every normal vehicle, however many in "
+                "all, each telling everybody the same",
                 TWICE_ROBUST,
                 "LeBlanc et al. 2013: (2f+1)-robustness suffices for W-MSR under the f-local model",
                 "a local violation splits for ever: its malicious nodes stand still (LeBlanc et al. 2013, Theorem 1)",
@@ -110,7 +114,8 @@ THREAT_MODELS: Mapping[str, ThreatModel] = MappingProxyType(
                 "byzantine",
                 "updates in step, without delays; at most f malicious nodes in all, telling each neighbour another lie",
                 NO_TRAP,
-                "Vaidya, Tseng and Liang 2012: agreement iff G - M is (f+1)-robust for every M of at most f nodes",
+                "Vaidya, Tseng and Liang 2012, first-order iterative consensus: agreement iff G - M is (f+1)-robust "
+                "for every M of at most f nodes",
                 _SYNCHRONOUS_TRAP,
                 two_faces=True,
                 local=False,
@@ -121,7 +126,7 @@ THREAT_MODELS: Mapping[str, ThreatModel] = MappingProxyType(
                 "delayed",
                 "partly asynchronous updates and delayed messages (ADP-MSR); at most f malicious nodes in all",
                 TWICE_ROBUST,
-                "the source paper, Theorem 1, sufficiency",
+                f"the source paper, Theorem 1, sufficiency, {SECOND_ORDER_GAINS}",
                 _DELAYED_TRAP,
                 two_faces=True,
                 local=False,
@@ -130,9 +135,10 @@ THREAT_MODELS: Mapping[str, ThreatModel] = MappingProxyType(
             ),
             ThreatModel(
                 "delayed-local",
-                "the same, but up to f malicious nodes around every normal vehicle, however many in all",
+                "partly asynchronous updates and delayed messages (ADP-MSR); up to f malicious nodes around every "
+                "normal vehicle, however many in all",
                 TWICE_ROBUST,
-                "the source paper, first corollary (f-local)",
+                f"the source paper, first corollary (f-local), {SECOND_ORDER_GAINS}",
                 _DELAYED_TRAP,
                 two_faces=True,
                 local=True,

@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 from robustness.errors import InvalidParameter
 from robustness.results import RobustnessResult, Verdict
 from robustness.threat_models.deciding import Decisions
-from robustness.threat_models.models import THREAT_MODELS, ThreatModel
+from robustness.threat_models.models import SECOND_ORDER_GAINS, THREAT_MODELS, ThreatModel
 from robustness.time_varying import TimeVaryingGraph, check_joint_robustness
 
 __all__ = ["MODELS_OVER_TIME", "JointDecisions", "over_time"]
@@ -37,7 +37,8 @@ def over_time(name: str) -> ThreatModel:
     return replace(
         threat,
         setting=f"{threat.setting}; links come and go",
-        theorem="the source paper, corollary on time-varying networks: jointly (2f+1)-robust with l <= tau",
+        theorem="the source paper, corollary on time-varying networks: jointly (2f+1)-robust with l <= tau, "
+        f"{SECOND_ORDER_GAINS}",
         counter_theorem=f"{threat.counter_theorem}; no vehicle ever hears anybody it does not hear in the union",
     )
 

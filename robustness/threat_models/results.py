@@ -15,6 +15,7 @@ from robustness.threat_models.models import ThreatModel
 
 if TYPE_CHECKING:
     from robustness.simulation.attacks import Attack
+    from robustness.time_varying import TimeVaryingGraph
 
 __all__ = ["AttackSets", "Reason", "Standing", "ToleranceResult", "ToleranceTable"]
 
@@ -94,8 +95,10 @@ class ToleranceResult:
         The largest f for which it is decided that no attack of the model's kind exists; -1 when for none.
     no_promise : int or None
         The smallest f for which it is decided that the promise does not apply.
-    over_time : bool
-        Whether the promise is about windows of a sequence; ``graph`` is then the union of its steps.
+    sequence : TimeVaryingGraph or None
+        The sequence whose windows the promise is about; ``graph`` is then the union of its steps.
+    tau : int or None
+        With a sequence: the bound on delays and on the length of the windows.
     """
 
     graph: Digraph = field(repr=False)
@@ -106,7 +109,8 @@ class ToleranceResult:
     attack_sets: AttackSets | None = None
     no_attack: int = -1
     no_promise: int | None = None
-    over_time: bool = False
+    sequence: TimeVaryingGraph | None = field(default=None, repr=False, compare=False)
+    tau: int | None = None
 
     def __bool__(self) -> bool:
         raise TypeError("a ToleranceResult has no truth value: compare .guaranteed, .refuted or .standing(f)")
@@ -115,6 +119,11 @@ class ToleranceResult:
     def model(self) -> str:
         """The name of the threat model."""
         return self.threat.name
+
+    @property
+    def over_time(self) -> bool:
+        """Whether the promise is about windows of a sequence."""
+        return self.sequence is not None
 
     def standing(self, f: int) -> Standing:
         """Return what is known about f.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from robustness.threat_models.models import THREAT_MODELS
@@ -28,9 +28,10 @@ def number(f: int | None) -> str:
 
 
 def summary(result: ToleranceResult) -> str:
-    """Return one model's result in one sentence."""
+    """Return one model's result in a sentence, and what it rests on."""
     where = _WHERE[result.model]
-    return f"{where[0].upper()}{where[1:]}: {_outcome(result)}."
+    told = f"{where[0].upper()}{where[1:]}: {_outcome(result)}."
+    return " ".join([told, *_scope([result] if result.graph.n >= 2 else [])])
 
 
 def _outcome(result: ToleranceResult) -> str:
@@ -54,10 +55,19 @@ def table_summary(table: ToleranceTable) -> str:
     sentences: dict[str, list[str]] = {}
     for result in table.results:
         sentences.setdefault(_outcome(result), []).append(_WHERE[result.model])
+    told = [f"{'; and '.join(where)}: {outcome}." for outcome, where in sentences.items()]
     if len(sentences) == 1 and len(table) == len(THREAT_MODELS):
-        return f"{size}Under every threat model: {next(iter(sentences))}."
-    told = (f"{'; and '.join(where)}: {outcome}." for outcome, where in sentences.items())
-    return size + " ".join(sentence[0].upper() + sentence[1:] for sentence in told)
+        told = [f"under every threat model: {next(iter(sentences))}."]
+    return size + " ".join([*(sentence[0].upper() + sentence[1:] for sentence in told), *_scope(table.results)])
+
+
+def _scope(results: Sequence[ToleranceResult]) -> Iterator[str]:
+    """Yield what the promises rest on."""
+    if any(result.guaranteed >= 0 for result in results):
+        yield "What is guaranteed holds for the update rules, weights and gains that its theorem names."
+    sequence = results[0].sequence if results else None
+    if sequence is not None and sequence.period is None:
+        yield "A finite trace is taken to go on as it was: no new link, and every window as good as those seen."
 
 
 def _promised(result: ToleranceResult) -> str:
@@ -82,9 +92,9 @@ def _refuted(result: ToleranceResult) -> str:
     return f"for f = {f} an attack by {len(sets.M)} {'liar' if len(sets.M) == 1 else 'liars'} keeps it split for ever"
 
 
-def _between(which: Iterable[int], standing: Standing, result: ToleranceResult) -> str:
+def _between(which: Sequence[int], standing: Standing, result: ToleranceResult) -> str:
     values = ", ".join(map(str, which))
     if standing is Standing.UNDECIDED:
-        return f"f = {values} was not decided within the limit"
+        return f"f = {values} {'was' if len(which) == 1 else 'were'} not decided within the limit"
     kind = "trap" if result.threat.two_faces else "attack by vehicles that stand still"
-    return f"f = {values} is open: the theorem promises nothing, and no {kind} exists"
+    return f"f = {values} {'is' if len(which) == 1 else 'are'} open: the theorem promises nothing, and no {kind} exists"

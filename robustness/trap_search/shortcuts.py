@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from robustness.algorithms import Limits
-from robustness.definitions import largest_conceivable_r
+from robustness.definitions import largest_conceivable_r, r_reachable_ids
 from robustness.digraph import Digraph
 from robustness.results import Verdict
 from robustness.trap_search.question import Question, Sets
@@ -76,20 +76,22 @@ def _high_degree(graph: Digraph, question: Question) -> Settled | None:
 
 
 def _by_robustness(graph: Digraph, question: Question, limits: Limits) -> Settled | None:
-    """(2f+1)-robust: none. A violation of (f+1)-robustness: one, with nobody malicious. Both as far as bounds tell."""
+    """(2f+1)-robust: none. A violation of (f+1)- or (f+1,f+1)-robustness: one. As far as bounds tell."""
     from robustness.bounds import settle
 
     f, highest = question.f, largest_conceivable_r(graph.n)
-    for r in (2 * f + 1, f + 1):
+    for r, s in ((2 * f + 1, 1), (f + 1, 1), (f + 1, f + 1)):
         if r > highest or limits.expired():
             continue
         seconds = min(_HEURISTIC_SECONDS, limits.seconds_left())
-        settled = settle(graph, r, 1, seed=limits.seed, time_budget=seconds, stop=limits.expired)
+        settled = settle(graph, r, s, seed=limits.seed, time_budget=seconds, stop=limits.expired)
         if settled is None:
             continue
         if settled.verdict is Verdict.ROBUST and r == 2 * f + 1:
             return None, f"{r}-robust, so no trap for f = {f}"
         if settled.pair is not None and r == f + 1:
-            found = Sets(frozenset(), settled.pair.first, settled.pair.second)
-            return found, f"not {r}-robust: nobody need be malicious"
+            S1, S2 = settled.pair
+            bad = r_reachable_ids(graph, S1, r) | r_reachable_ids(graph, S2, r)
+            found = Sets(bad, S1 - bad, S2 - bad) if question.two_faces else Sets(bad, S1, S2)
+            return found, f"not {r}-robust: nobody need be malicious" if not bad else f"not ({r},{r})-robust"
     return None

@@ -174,11 +174,25 @@ class TestFiles:
                     r = model[what] + 1 if exact else 2 * model[what] + 1
                     assert (ordinary.verdict, ordinary.r) == ("robust" if what == "guaranteed" else "not-robust", r)
                     assert ordinary.s == (r if exact else 1)
-        attack = folder / "delayed-attack.json"
-        arguments = ["simulate", "-", "--attack", str(attack), "--steps", "20"]
-        replay = CliRunner().invoke(robustness, arguments, input=BETWEEN)
+            arguments = ["simulate", "-", "--attack", str(folder / f"{name}-attack.json"), "--steps", "20"]
+            replay = CliRunner().invoke(robustness, arguments, input=BETWEEN)
+            assert replay.exit_code == ExitCode.DONE, replay.output
+            assert "exactly" in replay.stdout
+
+    def test_a_local_violation_with_many_liars_is_replayed(self, tmp_path: Path) -> None:
+        masks = (118, 57, 123, 54, 72, 26, 63)
+        graph = encode_topology(nx.DiGraph([(j, i) for i in range(7) for j in range(7) if masks[i] >> j & 1]))
+        assert tolerance("--model", "malicious-local", "-o", str(tmp_path), graph=graph).exit_code == ExitCode.DONE
+        attack = json.loads((tmp_path / "malicious-local-attack.json").read_bytes())
+        assert (attack["f"], attack["kind"], attack["malicious"]) == (1, "violation", [0, 2, 6])
+        arguments = ["simulate", "-", "--attack", str(tmp_path / "malicious-local-attack.json"), "--steps", "20"]
+        replay = CliRunner().invoke(robustness, arguments, input=graph)
         assert replay.exit_code == ExitCode.DONE, replay.output
         assert "exactly" in replay.stdout
+
+    def test_where_nobody_can_disagree_no_limit_is_blamed(self, tmp_path: Path) -> None:
+        outcome = tolerance("--model", "delayed", "-o", str(tmp_path), graph=encode_topology(nx.empty_graph(1)))
+        assert "no certificate of delayed, f = 0 guaranteed: nobody can disagree" in outcome.stderr
 
     def test_byzantine_beyond_twice_robust_is_certified_by_removals(self, tmp_path: Path) -> None:
         assert tolerance("--model", "byzantine", "-o", str(tmp_path), graph=BETWEEN).exit_code == ExitCode.DONE

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import json
 import random
+from pathlib import Path
 
 import networkx as nx
 import pytest
 from click.testing import CliRunner
 
 import robustness as rb
+from certificates import verify_joint, verify_tolerance
 from cli.exit_codes import ExitCode
+from cli.interruption import Overrun
 from cli.main import robustness
 from robustness.errors import InvalidParameter
 from robustness.simulation import as_topology
 from robustness.threat_models import Standing, certify_tolerance, tolerance
-from robustness.time_varying import TimeVaryingGraph
+from robustness.time_varying import TimeVaryingGraph, canonical_sequence
 from tests.oracles import brute_profile
 from tests.tolerance.brute_force import has_trap
 
@@ -89,11 +92,29 @@ def test_a_finite_trace_says_that_it_ends() -> None:
     assert "nothing is said beyond its last step" in first.statement
 
 
-def test_certificates_are_about_the_union_s_trap_only() -> None:
-    result = tolerance(spread(nx.complete_graph(6), 2, 2), "delayed", tau=2)
+@pytest.mark.parametrize("period", [2, None])
+def test_certificates_are_about_windows_and_about_the_union(period: int | None) -> None:
+    sequence = spread(nx.complete_graph(6), 2, period)
+    result = tolerance(sequence, "delayed", tau=2)
     found = certify_tolerance(result)
-    assert found.guaranteed is None
+    assert found.guaranteed is not None
     assert found.refuted is not None
+    promised = verify_joint(canonical_sequence(sequence), found.guaranteed)
+    assert (promised.verdict, promised.r, promised.s, promised.window) == ("robust", 2 * result.guaranteed + 1, 1, 2)
+    refuted = verify_tolerance(result.graph.canonical_bytes(), found.refuted)
+    assert (refuted.verdict, refuted.f) == ("apart", result.refuted)
+
+
+def test_no_time_no_certificate() -> None:
+    result = tolerance(spread(nx.complete_graph(6), 2, 2), "delayed", tau=2)
+    assert certify_tolerance(result, time_limit=1e-9).guaranteed is None
+
+
+def test_nothing_over_time_is_promised_without_saying_how_far() -> None:
+    sentence = "A finite trace is taken to go on as it was"
+    for period, said in ((None, True), (2, False)):
+        table = tolerance(spread(nx.complete_graph(6), 2, period), tau=2)
+        assert all((sentence in text) == said for text in (table.summary(), table["delayed"].summary()))
 
 
 class TestMisuse:
@@ -129,8 +150,22 @@ class TestCommand:
     def test_gate(self, f: int, code: ExitCode) -> None:
         assert self.run("--tau", "2", "--require", str(f))[0] == code
 
-    def test_files(self, tmp_path: object) -> None:
+    def test_files(self, tmp_path: Path) -> None:
         assert self.run("--tau", "2", "-o", str(tmp_path))[0] == ExitCode.DONE
+        read = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+        for model in ("delayed", "delayed-local"):
+            promised = verify_joint(read["sequence.json"], read[f"{model}-guaranteed-0.cert"])
+            assert (promised.verdict, promised.r) == ("robust", 1)
+            assert verify_tolerance(read["graph.json"], read[f"{model}-refuted-1.cert"]).verdict == "apart"
+
+    def test_work_that_overruns_speaks_of_the_models_over_time_alone(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        def overrun(*_: object) -> None:
+            raise Overrun
+
+        monkeypatch.setattr("cli.tolerance.interruptibly", overrun)
+        code, text = self.run("--tau", "2", "--json")
+        assert code == ExitCode.UNDECIDED
+        assert [model["model"] for model in json.loads(text)["models"]] == ["delayed", "delayed-local"]
 
     def test_usage(self) -> None:
         assert self.run("--period", "2")[0] == ExitCode.USAGE
