@@ -291,9 +291,8 @@ def _any_graph(draw: Draw, min_nodes: int, max_nodes: int, *, directed: bool) ->
     _require_at_least("min_nodes", min_nodes, 0)
     _require_at_least("max_nodes", max_nodes, min_nodes)
     # What becomes of each node is drawn apart from the links, and all links are drawn whatever becomes of their
-    # ends. So
-    # shrinking can drop a node, or merge it with a neighbour, or drop a link, and leave the rest as it is: steps to
-    # any minor.
+    # ends. So shrinking can drop a node, or merge it with a neighbour, or drop a link, and leave the rest as it is:
+    # steps to any minor.
     fates = [draw(st.sampled_from(_FATES)) for _ in range(max_nodes - min_nodes)]
     graph = _empty(max_nodes, directed)
     graph.add_edges_from(_links(draw, max_nodes, directed))
@@ -365,8 +364,7 @@ def _seed(draw: Draw, n: int, r: int, directed: bool) -> nx.Graph:
     spare = [max(n - 1 - (n // 2 + r - 1), 0) if r else n - 1] * n
     if not any(spare):
         return graph
-    # What is drawn is what is taken away, so that shrinking ends in the complete graph, the seed that is easiest to
-    # see.
+    # What is drawn is what is taken away, so shrinking ends in the complete graph, the seed that is easiest to see.
     for u, v in draw(st.lists(st.sampled_from(sorted(graph.edges)), unique=True, max_size=2 * n)):
         ends = [v] if directed else [u, v]
         if all(spare[end] for end in ends):

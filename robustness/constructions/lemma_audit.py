@@ -109,24 +109,23 @@ _TAIL = """
 ## What to make of it
 
 * **(iii) is about undirected graphs only.** A 1-robust digraph need not be strongly connected: one arc between two
-nodes
-  is enough. What does hold for digraphs is that r - 1 nodes may be removed and some node still reaches all others: by
-  (vi) for node removal the rest is 1-robust, and (iv) applies. That r-connected does not imply r-robust is confirmed.
+  nodes is enough. What does hold for digraphs is that r - 1 nodes may be removed and some node still reaches all
+  others: by (vi) for node removal the rest is 1-robust, and (iv) applies. That r-connected does not imply r-robust
+  is confirmed.
 * **(iv) needs r >= 1.** Item (i) lets r be 0, and every graph is (0,s)-robust. With r >= 1 it is an equivalence.
-* **(vii) is too modest.** The in-degree r + s - 1 that it asks for keeps (r,s), not only r; for r alone in-degree r is
-  enough. For (r,s) the bound is sharp. The proof is in `robustness.constructions.operations.add_node`.
-* **The range of s.** The definition asks for r, s < n, item (v) uses s = n. Both are right: (r,n-1) and (r,n) are the
-same
-  property, since a violating pair leaves a node on either side unreached and so has at most n - 2 reached nodes. For
-  n = 2 the restriction would leave only (1,1).
-* **The least in-degree** of an r-robust digraph is at least r from r = 2 on; a 1-robust digraph may have a node that
-  hears nobody.
+* **(vii) is too modest.** The in-degree r + s - 1 that it asks for keeps (r,s), not only r; for r alone in-degree r
+  is enough. For (r,s) the bound is sharp. The proof is in `robustness.constructions.operations.add_node`.
+* **The range of s.** The definition asks for r, s < n, item (v) uses s = n. Both are right: (r,n-1) and (r,n) are
+  the same property, since a violating pair leaves a node on either side unreached and so has at most n - 2 reached
+  nodes. For n = 2 the restriction would leave only (1,1).
+* **The least in-degree** of an r-robust digraph is at least r from r = 2 on; a 1-robust digraph may have a node
+  that hears nobody.
 * **K_5 is not the only 3-robust graph on 5 nodes**: K_5 without one edge is 3-robust as well, with 9 = 3r(r-1)/2
-edges. * The proof of Proposition 1 cites (iv) where it adds nodes; it means (vii). The remark on the normal part
-cites (vi), which
-  keeps the nodes; it needs the form for node removal (`remove_nodes`), which the table confirms.
-* (i) to (vii) have short proofs; those that the operations rely on stand in their docstrings. The last line
-  follows from (ii), used s - 1 times.
+  edges.
+* The proof of Proposition 1 cites (iv) where it adds nodes; it means (vii). The remark on the normal part cites
+  (vi), which keeps the nodes; it needs the form for node removal (`remove_nodes`), which the table confirms.
+* (i) to (vii) have short proofs; those that the operations rely on stand in their docstrings. The last line follows
+  from (ii), used s - 1 times.
 """
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What holds, and what does not, of the paper's counterexample graphs: by exact search for f = 1, 2, 3."""
+"""What holds, and what does not, of the paper's counterexample graphs: by exact search."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import robustness as rb
 from robustness.constructions import five_node_figure, is_trap, two_f_robust_counterexample
 from robustness.constructions.small_graphs import batch_profiles
 from robustness.digraph import as_digraph
+from robustness.graph_search import find_graph
 
 
 def profile_of(G):
@@ -57,6 +58,34 @@ def test_corrected_variant_has_every_property_claimed(f):
     assert sum(s > 0 for s in profile[1:]) == 2 * f, "not (2f+1)-robust"
     assert profile[f + 1] == len(G)
     assert least_in_degree(G) == 3 * f >= 2 * f + 1
+
+
+@pytest.mark.parametrize("f", range(4, 9))
+@pytest.mark.parametrize("variant", ["paper", "corrected"])
+def test_beyond_three(f, variant):
+    G = two_f_robust_counterexample(f, variant)
+    paper = variant == "paper"
+    assert len(G) == (7 * f if paper else 4 * f - 1)
+    assert least_in_degree(G) == (3 * f - 1 if paper else 3 * f)
+    assert rb.is_r_robust(G, 2 * f)
+    assert not rb.is_r_robust(G, 2 * f + 1)
+    assert rb.is_rs_robust(G, f + 1, f if paper else len(G))
+    assert rb.is_rs_robust(G, f + 1, f + 1) != paper
+
+
+@pytest.mark.parametrize("f", [1, 2, 3])
+def test_corrected_up_to_three_is_a_clique_without_a_matching(f):
+    G = two_f_robust_counterexample(f, "corrected")
+    missing = nx.complement(G)
+    assert missing.size() == f + 1
+    assert max(d for _, d in missing.degree) == 1
+
+
+def test_for_two_there_is_one_on_seven_nodes():
+    G = find_graph(7, ["4-robust", "(3,3)-robust", "min-degree>=5", "trap(2)"]).graph
+    missing = nx.complement(G)
+    assert sorted(d for _, d in missing.degree) == [0, 0, 0, 1, 1, 1, 1]
+    assert is_trap(G, 2, **G.graph["trap"])
 
 
 @pytest.mark.parametrize("f", [1, 2, 3, 4, 5])
