@@ -13,7 +13,7 @@ checks it with ``==``.
 from __future__ import annotations
 
 import json
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Hashable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,7 +24,6 @@ from robustness.definitions import is_violation, r_reachable_ids
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.simulation.adversaries import Adversary, Alternating, Constant
-from robustness.simulation.formation import node_offsets
 from robustness.simulation.models import fault_model_named, require_fault_model
 from robustness.simulation.outcome import Outcome
 from robustness.simulation.run import simulate
@@ -96,12 +95,11 @@ class Attack:
         }
         return Scenario(steps=steps, **(fields | changes))
 
-    def start(self, offsets: Mapping[Hashable, float] | None = None, seed: int = 0) -> Start:
-        """Return the start: S1 low, S2 high, the others between, all at rest; shifted by formation offsets."""
+    def start(self, seed: int = 0) -> Start:
+        """Return the start: S1 low, S2 high, the others between, all at rest."""
         places = np.full(self.graph.n, _BETWEEN)
         places[list(self.graph.ids(self.S1))] = _LOW
         places[list(self.graph.ids(self.S2))] = _HIGH
-        places += node_offsets(self.graph, offsets)
         return Start(self.malicious, tuple(places.tolist()), (0.0,) * self.graph.n, seed)
 
     def run(self, steps: int = 1000, *, record: bool = False, **changes: Any) -> Outcome:
@@ -111,8 +109,7 @@ class Attack:
         >>> attack_from_violation(nx.path_graph(4), 1, ({0, 1}, {2, 3})).run(50).exact
         True
         """
-        scenario = self.scenario(steps, **changes)
-        return simulate(scenario, [self.start(scenario.offsets)], record=record)[0]
+        return simulate(self.scenario(steps, **changes), [self.start()], record=record)[0]
 
     def story(self) -> str:
         """Return the attack in words."""

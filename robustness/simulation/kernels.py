@@ -84,7 +84,7 @@ def _listen(b, first, last, step, tau, ring, channel, delay, status, remember, m
 def advance(  # type: ignore[no-untyped-def]
     lo, hi, step, tau, f, first_order, strict, hold, remember, T,
     p, q, ring, channel, delay, status, update, held, kept, memory, stamp,
-    indptr, weight, self_weight, delta, alpha, new_p, new_q,
+    indptr, weight, self_weight, alpha, new_p, new_q,
 ):  # fmt: skip
     """Advance the runs ``lo .. hi - 1`` by one step: reads ``p, q (B, n)``, writes ``new_p, new_q (B, n)``."""
     widest = 1
@@ -107,7 +107,7 @@ def advance(  # type: ignore[no-untyped-def]
                 )
             if updates:
                 for t in range(count):
-                    rel[t] = (values[t] - own) - delta[arcs[t]]
+                    rel[t] = values[t] - own
                 _drop_extremes(rel, count, f - missing, strict, above, below, keep)
                 if hold:
                     for e in range(first, last):
@@ -122,7 +122,7 @@ def advance(  # type: ignore[no-untyped-def]
             elif not first_order:
                 for e in range(first, last):
                     if kept[b, e]:
-                        total += weight[e] * ((held[b, e] - own) - delta[e])
+                        total += weight[e] * (held[b, e] - own)
             if first_order:
                 new_p[b, i] = own + total / (self_weight[i] + mass)
                 new_q[b, i] = 0.0
@@ -148,13 +148,13 @@ def fill_uniform(stream, values):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(nogil=True, cache=True)
-def extremes(p, q, normal, offset, low, high, fastest):  # type: ignore[no-untyped-def]
-    """Write, for every run, the least and greatest ``p - d`` and the greatest ``|q|`` of the normal vehicles."""
+def extremes(p, q, normal, low, high, fastest):  # type: ignore[no-untyped-def]
+    """Write, for every run, the least and greatest p and the greatest ``|q|`` of the normal vehicles."""
     for b in range(p.shape[0]):
         lo, hi, quick = np.inf, -np.inf, 0.0
         for i in range(p.shape[1]):
             if normal[b, i]:
-                value = p[b, i] - offset[i]
+                value = p[b, i]
                 lo = min(lo, value)
                 hi = max(hi, value)
                 quick = max(quick, abs(q[b, i]))

@@ -8,6 +8,7 @@ import numpy as np
 
 from robustness.simulation.adversaries.protocol import Setting
 from robustness.simulation.dynamics import Floats
+from robustness.simulation.formation import node_offsets
 from robustness.simulation.outcome import (
     Outcome,
     Trajectory,
@@ -42,6 +43,7 @@ class Observer:
         self.speed = np.zeros((states, runs))
         self.normal = ~setting.malicious
         self.final = setting.initial
+        self.offsets = node_offsets(setting.graph, scenario.offsets)
         self.watched = np.zeros((runs, n), dtype=bool)
         self.unchanged = np.ones(runs, dtype=bool)
         if scenario.groups is not None:
@@ -52,10 +54,9 @@ class Observer:
         """Watch the normal nodes of two groups, each of which starts in agreement and apart from the other."""
         self.watched[:, first + second] = True
         self.watched &= self.normal
-        aligned = self.setting.initial - self.setting.offsets
         ends = []
         for group in (first, second):
-            normal, values = self.normal[:, group], aligned[:, group]
+            normal, values = self.normal[:, group], self.setting.initial[:, group]
             self.unchanged &= normal.any(axis=1)
             ends.append((np.where(normal, values, np.inf).min(1), np.where(normal, values, -np.inf).max(1)))
         (low_1, high_1), (low_2, high_2) = ends
@@ -65,12 +66,12 @@ class Observer:
         """Measure the states ``p, q (B, n)`` of one step."""
         from robustness.simulation.kernels import extremes
 
-        extremes(p, q, self.normal, self.setting.offsets, self.low[step], self.high[step], self.speed[step])
+        extremes(p, q, self.normal, self.low[step], self.high[step], self.speed[step])
         if self.scenario.groups is not None:
             moved = self.watched & ((p != self.setting.initial) | (q != 0.0))
             self.unchanged &= ~moved.any(axis=1)
         if self.record is not None:
-            for store, values in zip(self.record, (p, q, sent), strict=True):
+            for store, values in zip(self.record, (p + self.offsets, q, sent + self.offsets), strict=True):
                 store[step] = values
         self.final = p
 
@@ -99,7 +100,7 @@ class Observer:
             rate=convergence_rate(spread),
             safe=self._safe(b),
             promise=self.promise,
-            groups=groups_of(self.final[b] - setting.offsets, self.normal[b], setting.graph.labels, limit),
+            groups=groups_of(self.final[b], self.normal[b], setting.graph.labels, limit),
             trajectory=states,
         )
 

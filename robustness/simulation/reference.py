@@ -25,7 +25,7 @@ __all__ = ["kept_neighbours", "simulate_plainly"]
 
 
 def kept_neighbours(relative: dict[int, float], f: int, *, strict: bool) -> list[int]:
-    """Return the in-neighbours a vehicle keeps, ascending, given ``p_j - p_i - delta_ij`` for each it heard.
+    """Return the in-neighbours a vehicle keeps, ascending, given ``p_j - p_i`` for each it heard.
 
     >>> kept_neighbours({0: 3.0, 1: -1.0, 2: 0.0, 3: 5.0}, 1, strict=False)
     [0, 2]
@@ -99,14 +99,14 @@ class _PlainBatch(Batch):
         vehicle, T = self.vehicles[b][i], self.scenario.T
         own, speed = float(self.p[b, i]), float(self.q[b, i])
         if updates:
-            relative = {e: (heard[e] - own) - float(self.delta[e]) for e in heard}
+            relative = {e: heard[e] - own for e in heard}
             drop = max(self.scenario.f - missing, 0)
             vehicle.kept = {e: heard[e] for e in kept_neighbours(relative, drop, strict=self.rule.strict)}
         elif self.rule.first_order:
             return own, 0.0
         total = mass = 0.0
         for e, position in sorted(vehicle.kept.items()):
-            total += float(self.weight[e]) * ((position - own) - float(self.delta[e]))
+            total += float(self.weight[e]) * (position - own)
             mass += float(self.weight[e])
         if self.rule.first_order:
             return own + total / (1.0 + mass), 0.0

@@ -21,7 +21,6 @@ from robustness.errors import InvalidParameter, Undecided
 from robustness.simulation.adversaries.protocol import Move, Setting, View
 from robustness.simulation.draws import Draws
 from robustness.simulation.dynamics import Floats
-from robustness.simulation.formation import arc_offsets, node_offsets
 from robustness.simulation.gains import PromiseWarning, arc_weights, node_gains, promise_gap
 from robustness.simulation.models import fault_model_named, require_fault_model
 from robustness.simulation.observer import Observer
@@ -120,7 +119,7 @@ class Batch:
     Attributes
     ----------
     p, q : arrays, shape ``(B, n)``
-        Transformed positions and velocities.
+        Aligned positions and velocities, see :mod:`robustness.simulation.formation`.
     sent : array, shape ``(B, n)``
         The claims of the current step.
     promise : str or None
@@ -152,7 +151,7 @@ class Batch:
         self._prepare_arcs()
         delays = scenario.schedule.delay_rule
         self.setting = Setting(
-            graph, malicious, scenario.f, model, scenario.T, node_offsets(graph, scenario.offsets), self.p.copy(),
+            graph, malicious, scenario.f, model, scenario.T, self.p.copy(),
             Draws([start.seed for start in starts]), delays.bound, delays.adversarial, self._trial,
         )  # fmt: skip
         busy = len(starts) * (graph.arc_count + graph.n) >= _WORTH_A_THREAD
@@ -167,7 +166,6 @@ class Batch:
             weights = "unit"
         self.weight = arc_weights(graph, weights)
         self.promise = promise_gap(graph, self.rule, scenario.f, scenario.T, self.alpha, self.weight)
-        self.delta = arc_offsets(graph, node_offsets(graph, scenario.offsets))
         self.board = board_for(
             graph, graph.ids(scenario.active), byzantine=fault_model_named(scenario.model).byzantine
         )
@@ -241,7 +239,7 @@ class Batch:
         return (
             step, scenario.schedule.oldest, scenario.f, rule.first_order, rule.strict, self.hold, self.remember,
             scenario.T, self.p, self.q, ring, channel, delay, status, update, self.held, self.kept, self.memory,
-            self.stamp, graph.in_indptr, self.weight, self._own, self.delta, self.alpha, new_p, new_q,
+            self.stamp, graph.in_indptr, self.weight, self._own, self.alpha, new_p, new_q,
         )  # fmt: skip
 
     def _delays(self, view: View) -> npt.NDArray[np.int64]:
@@ -271,7 +269,7 @@ class Batch:
         graph, rule, scenario = self.topology.union, self.rule, self.scenario
         advance(
             0, p.shape[0], 0, 0, scenario.f, rule.first_order, rule.strict, False, False, scenario.T, p, q, sent[None],
-            self.board.tails, *self._at_once, graph.in_indptr, self.weight, self._own, self.delta, self.alpha,
+            self.board.tails, *self._at_once, graph.in_indptr, self.weight, self._own, self.alpha,
             new_p, new_q,
         )  # fmt: skip
         return new_p

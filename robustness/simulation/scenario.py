@@ -112,8 +112,9 @@ class Start:
     ----------
     malicious : frozenset of labels
     positions, velocities : tuple of float
-        Transformed positions ``p`` and velocities ``q`` in id order; at step 0 absolute and transformed positions
-        are the same, velocities differ by the target speed.
+        Aligned positions ``p - d`` and velocities ``q`` in id order. At step 0 absolute and transformed positions are
+        the same, so these are absolute positions relative to each vehicle's place in the formation; velocities are
+        relative to the target speed.
     seed : int
         Of every draw of this run.
     """

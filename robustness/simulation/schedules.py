@@ -164,7 +164,7 @@ class AdversarialUpdates:
     def updates(self, view: View) -> Flags:
         """Return the inner vehicles and those that may wait no longer."""
         low, high = view.setting.normal_range(view.p)
-        outer = np.abs(view.p - view.setting.offsets - (low + high) / 2) > (high - low) / 4
+        outer = np.abs(view.p - (low + high) / 2) > (high - low) / 4
         return (~outer | (view.step - view.last_update >= self.gap)).astype(np.uint8)
 
 
@@ -268,7 +268,7 @@ class AdversarialDelays:
         """Return the delay that serves each arc's receiver worst."""
         setting = view.setting
         low, high = setting.normal_range(view.p)
-        above = (view.p - setting.offsets > (low + high) / 2)[:, setting.heads]
+        above = (view.p > (low + high) / 2)[:, setting.heads]
         sign = np.where(above, 1.0, -1.0)
         past = np.stack([sign * recall(delay) for delay in range(self.bound + 1)])
         return np.asarray(np.argmax(past, axis=0), dtype=np.int64)

@@ -25,4 +25,4 @@ def confirm(result: ToleranceResult, steps: int = 12) -> bool | None:
         return None
     rules = ("adp-msr", "w-msr") if attack.delayed else ("adp-msr", "dp-msr", "w-msr")
     scenarios = [attack.scenario(steps, rule=rule) for rule in rules]
-    return all(simulate_plainly(each, [attack.start(each.offsets)])[0].exact for each in scenarios)
+    return all(simulate_plainly(each, [attack.start()])[0].exact for each in scenarios)

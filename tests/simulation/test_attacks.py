@@ -142,10 +142,12 @@ class TestTheSplitDependsOnNothingElse:
                 if not attack.delayed or schedule.delay_rule.adversarial:
                     assert_splits(attack, 60, schedule=schedule)
 
-    def test_formations(self) -> None:
+    @given(st.lists(st.floats(-1e6, 1e6), min_size=8, max_size=8))
+    @settings(max_examples=20)
+    def test_formations(self, places: list[float]) -> None:
+        """Exactly, also where no floating-point number is the sum of a position and an offset."""
         for attack in self.attacks():
-            labels = attack.graph.labels
-            assert_splits(attack, 40, offsets={label: 3.25 * i - 7 for i, label in enumerate(labels)})
+            assert_splits(attack, 20, offsets=dict(zip(attack.graph.labels, places, strict=False)))
 
     def test_sensing(self) -> None:
         for attack in self.attacks():

@@ -12,7 +12,7 @@ from robustness.digraph import Digraph, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.simulation import PromiseWarning, Scenario, Start, Topology, simulate
 from robustness.simulation.dynamics import double_integrator, to_absolute, to_transformed
-from robustness.simulation.formation import arc_offsets, node_offsets, offsets_from_deltas
+from robustness.simulation.formation import node_offsets, offsets_from_deltas
 from robustness.simulation.gains import arc_weights, gain_interval, kept_weight_bound, node_gains, promise_gap
 from robustness.simulation.rules import DP_MSR, W_MSR
 
@@ -49,9 +49,20 @@ class TestFormation:
     GRAPH = as_digraph(nx.path_graph(3))
 
     def test_delta_is_where_i_wants_j(self) -> None:
-        offsets = node_offsets(self.GRAPH, {1: 2.0, 2: 5.0})
-        # arcs receiver-major: 1 -> 0, 0 -> 1, 2 -> 1, 1 -> 2
-        assert arc_offsets(self.GRAPH, offsets).tolist() == [2.0, -2.0, 3.0, -3.0]
+        """Equation 5 of the source paper, on the recorded positions: u = sum a (p_j - p_i - delta_ij) - alpha q."""
+        offsets = {1: 2.3, 2: 5.1}
+        deltas = {(i, j): offsets.get(j, 0.0) - offsets.get(i, 0.0) for i in range(3) for j in range(3)}
+        scenario = Scenario(Topology((self.GRAPH,)), 0, offsets=offsets, steps=30, T=0.5, alpha=3.0, weights="unit")
+        start = Start(frozenset(), (3.0, -1.0, 4.0), (1.0, -1.0, 0.5))
+        (outcome,) = simulate(scenario, [start], record=True)
+        states = outcome.trajectory
+        assert states.p[0].tolist() == [3.0, -1.0 + 2.3, 4.0 + 5.1]
+        for k in range(30):
+            p, q = states.p[k], states.q[k]
+            u = np.array(
+                [sum(p[j] - p[i] - deltas[i, j] for j in nx.path_graph(3)[i]) - 3.0 * q[i] for i in range(3)]
+            )
+            assert np.allclose(double_integrator(p, q, u, 0.5), (states.p[k + 1], states.q[k + 1]), atol=1e-12)
 
     def test_consistent_deltas_become_offsets(self) -> None:
         deltas = {(0, 1): 2.0, (1, 0): -2.0, (1, 2): 3.0, (2, 0): -5.0}

@@ -25,7 +25,7 @@ class Alternating:
     Parameters
     ----------
     even, odd : float
-        The two values of ``p - d``.
+        The two positions.
     sees_even, sees_odd : tuple of node labels
         The nodes that are to see only one of them. With a schedule that leaves the delays to the adversary they
         do by a delay of 0 or 1 step; under a Byzantine model by being told so directly. Otherwise no use is made
@@ -44,7 +44,7 @@ class Alternating:
         sent = setting.by_malicious(face + 0.0 * setting.initial)
         first, second = (_arcs_into(setting.graph, group) for group in (self.sees_even, self.sees_odd))
         if setting.model.byzantine:
-            value = np.where(first, self.even, np.where(second, self.odd, np.nan)) + setting.offsets[setting.tails]
+            value = np.where(first, self.even, np.where(second, self.odd, np.nan))
             return Move(sent=sent, positions=sent, told=np.where(setting.from_malicious, value, np.nan))
         if not (setting.chooses_delays and setting.longest_delay >= 1):
             return Move(sent=sent, positions=sent)

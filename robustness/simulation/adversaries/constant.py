@@ -16,7 +16,7 @@ class Constant:
     Parameters
     ----------
     value : float or None
-        The value of ``p - d`` for all malicious nodes; None: each its own initial value.
+        The position of all malicious nodes; None: each its own initial one.
     """
 
     value: float | None = None
@@ -24,6 +24,5 @@ class Constant:
     def play(self, view: View) -> Move:
         """Return the constant as claim and as true position."""
         setting = view.setting
-        aligned = setting.initial - setting.offsets if self.value is None else self.value + 0.0 * setting.initial
-        held = setting.by_malicious(aligned)
+        held = setting.by_malicious(setting.initial if self.value is None else self.value + 0.0 * setting.initial)
         return Move(sent=held, positions=held)

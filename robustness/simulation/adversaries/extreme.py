@@ -39,42 +39,41 @@ class ExtremeValue:
     def play(self, view: View) -> Move:
         """Return the limits at this step."""
         setting = view.setting
-        aligned = view.p - setting.offsets
         low, high = setting.normal_range(view.p)
-        ceiling, floor = _upper_limits(view, aligned), -_upper_limits(view, -aligned)
+        ceiling, floor = _upper_limits(view, view.p), -_upper_limits(view, -view.p)
         upwards = self.side == "up" or (self.side == "both" and view.step % 2 == 0)
         hears = np.zeros((setting.graph.n, setting.graph.n), dtype=bool)
         hears[setting.tails, setting.heads] = True
         audience = hears[None] & ~setting.malicious[:, None, :]
         # Only who can be pulled counts: the outermost vehicle keeps nothing beyond its own value.
         if upwards:
-            pulled = audience & (ceiling > aligned)[:, None, :]
+            pulled = audience & (ceiling > view.p)[:, None, :]
             best = np.where(pulled, ceiling[:, None, :], -np.inf).max(axis=2, initial=-np.inf)
         else:
-            pulled = audience & (floor < aligned)[:, None, :]
+            pulled = audience & (floor < view.p)[:, None, :]
             best = np.where(pulled, floor[:, None, :], np.inf).min(axis=2, initial=np.inf)
-        claim = setting.by_malicious(np.where(np.isfinite(best), best, aligned))
+        claim = setting.by_malicious(np.where(np.isfinite(best), best, view.p))
         if not setting.model.byzantine:
             return Move(sent=claim, positions=claim)
-        limit = np.where(aligned > (low + high) / 2, ceiling, floor)[:, setting.heads]
-        told = np.where(setting.from_malicious, limit + setting.offsets[setting.tails], np.nan)
+        limit = np.where(view.p > (low + high) / 2, ceiling, floor)[:, setting.heads]
+        told = np.where(setting.from_malicious, limit, np.nan)
         return Move(sent=claim, positions=claim, told=told)
 
 
-def _upper_limits(view: View, aligned: Floats) -> Floats:
+def _upper_limits(view: View, p: Floats) -> Floats:
     """Return the greatest value each node would keep, shape ``(B, n)``."""
     setting = view.setting
-    limits = np.empty_like(aligned)
+    limits = np.empty_like(p)
     for i in range(setting.graph.n):
         senders = setting.graph.in_neighbours(i)
-        own = aligned[:, i]
-        others = np.where(setting.malicious[:, senders], -np.inf, aligned[:, senders])
+        own = p[:, i]
+        others = np.where(setting.malicious[:, senders], -np.inf, p[:, senders])
         if setting.f == 0:
             limits[:, i] = np.inf
         elif len(senders) < setting.f:
             limits[:, i] = own
         else:
             limits[:, i] = np.partition(others, len(senders) - setting.f, axis=1)[:, len(senders) - setting.f]
-    top = aligned.max(axis=1, keepdims=True, initial=-np.inf)
-    gain = np.maximum(np.minimum(limits, top) - aligned, 0.0)
-    return np.asarray(aligned + (1 - _INSIDE) * gain)
+    top = p.max(axis=1, keepdims=True, initial=-np.inf)
+    gain = np.maximum(np.minimum(limits, top) - p, 0.0)
+    return np.asarray(p + (1 - _INSIDE) * gain)

@@ -23,13 +23,12 @@ class Greedy:
     def play(self, view: View) -> Move:
         """Return the best claims found, which are also the true positions."""
         setting = view.setting
-        aligned = view.p - setting.offsets
         low, high = setting.normal_range(view.p)
         outside = high - low + 1.0
         ends = np.concatenate([low - outside, low, high, high + outside], axis=1)
-        inside = np.where(setting.malicious, low, aligned)
+        inside = np.where(setting.malicious, low, view.p)
         candidates = np.concatenate([inside, ends], axis=1).T[:, :, None]
-        sent = np.where(setting.malicious, low + setting.offsets, view.p)
+        sent = inside
         runs, choices = np.arange(len(sent)), len(candidates)
         p, q = np.tile(view.p, (choices, 1)), np.tile(view.q, (choices, 1))
         malicious = np.tile(setting.malicious, (choices, 1))
@@ -38,8 +37,8 @@ class Greedy:
         for turn in range(int(counts.max(initial=0))):
             # In each run the turn of another node: the malicious ones come first in their row of ``members``.
             mine = (np.arange(setting.graph.n) == members[:, turn, None]) & (turn < counts)[:, None]
-            trials = np.where(mine, candidates + setting.offsets, sent)
-            reached = setting.trial(p, q, trials.reshape(p.shape)) - setting.offsets
+            trials = np.where(mine, candidates, sent)
+            reached = setting.trial(p, q, trials.reshape(p.shape))
             top = np.where(malicious, -np.inf, reached).max(axis=1, initial=-np.inf)
             bottom = np.where(malicious, np.inf, reached).min(axis=1, initial=np.inf)
             best = (top - bottom).reshape(choices, -1).argmax(axis=0)

@@ -28,5 +28,5 @@ class Liar:
         """Return the claims of the one with the positions of the other."""
         words, deeds = self.says.play(view), self.does.play(view)
         sent = view.p if words.sent is None else words.sent
-        claims = view.setting.by_malicious(sent - view.setting.offsets)
+        claims = view.setting.by_malicious(sent)
         return Move(claims, deeds.positions, words.told, words.withheld, words.delays)

@@ -33,5 +33,5 @@ class Noise:
         if not setting.model.byzantine:
             return Move(sent=there, positions=there)
         values = bottom + length * draws.uniform("noise: arcs", view.step, graph.arc_count)
-        told = np.where(setting.from_malicious, values + setting.offsets[setting.tails], np.nan)
+        told = np.where(setting.from_malicious, values, np.nan)
         return Move(sent=there, positions=there, told=told)

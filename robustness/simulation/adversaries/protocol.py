@@ -3,6 +3,9 @@
 Adversaries are omniscient (Definition 2 of the source paper): they see every state, the network, the update times
 and the delays. They are frozen dataclasses without hidden state, so that a run can be replayed from its record:
 everything they do is a function of the view.
+
+All positions that they see and set are *aligned*: relative to each vehicle's place in the formation, so that
+agreement means equal numbers; see :mod:`robustness.simulation.formation`.
 """
 
 from __future__ import annotations
@@ -38,8 +41,6 @@ class Setting:
     model : FaultModel
     T : float
         The sampling period.
-    offsets : array, shape ``(n,)``
-        The formation offsets ``d_i``; agreement means that all ``p_i - d_i`` are equal.
     initial : array, shape ``(B, n)``
         The positions at step 0 and before.
     draws : Draws
@@ -57,7 +58,6 @@ class Setting:
     f: int
     model: FaultModel
     T: float
-    offsets: Floats
     initial: Floats
     draws: Draws
     longest_delay: int
@@ -81,20 +81,19 @@ class Setting:
 
     @cached_property
     def initial_range(self) -> tuple[Floats, Floats]:
-        """The least and greatest ``p - d`` of the normal vehicles at the start, shape ``(B, 1)`` each."""
+        """The least and greatest position of the normal vehicles at the start, shape ``(B, 1)`` each."""
         return self.normal_range(self.initial)
 
     def normal_range(self, p: Floats) -> tuple[Floats, Floats]:
-        """Return the least and greatest ``p - d`` of the normal vehicles, shape ``(B, 1)`` each; 0 without any."""
-        aligned = p - self.offsets
-        low = np.where(self.malicious, np.inf, aligned).min(axis=1, keepdims=True, initial=np.inf)
-        high = np.where(self.malicious, -np.inf, aligned).max(axis=1, keepdims=True, initial=-np.inf)
+        """Return the least and greatest position of the normal vehicles, shape ``(B, 1)`` each; 0 without any."""
+        low = np.where(self.malicious, np.inf, p).min(axis=1, keepdims=True, initial=np.inf)
+        high = np.where(self.malicious, -np.inf, p).max(axis=1, keepdims=True, initial=-np.inf)
         nobody = self.malicious.all(axis=1, keepdims=True)
         return np.where(nobody, 0.0, low), np.where(nobody, 0.0, high)
 
-    def by_malicious(self, aligned: Floats) -> Floats:
-        """Return ``aligned + d`` (any shape that broadcasts to ``(B, n)``) in malicious columns and NaN elsewhere."""
-        return np.where(self.malicious, aligned + self.offsets, np.nan)
+    def by_malicious(self, values: Floats) -> Floats:
+        """Return the values (any shape that broadcasts to ``(B, n)``) in malicious columns and NaN elsewhere."""
+        return np.where(self.malicious, values, np.nan)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -107,7 +106,7 @@ class View:
     step : int
         The step k; the ``tau`` steps before 0 are played too, with everybody at the initial position.
     p, q : arrays, shape ``(B, n)``
-        Transformed positions and velocities now.
+        Aligned positions and velocities now.
     previous : array, shape ``(B, n)``
         The positions one step earlier.
     last_update : integer array, shape ``(B, n)``
@@ -129,7 +128,7 @@ class Move:
     Attributes
     ----------
     sent : array, shape ``(B, n)``, or None
-        The transformed position each malicious node claims to all its neighbours; NaN: the true one.
+        The position each malicious node claims to all its neighbours; NaN: the true one.
     positions : array, shape ``(B, n)``, or None
         Where it truly is, as vehicles with active sensing see it; NaN: where the update rule takes it.
     told : array, shape ``(B, A)``, or None

@@ -26,5 +26,5 @@ class Ramp:
         setting = view.setting
         low, high = setting.initial_range
         spread = high - low + (high == low)
-        there = setting.by_malicious(setting.initial - setting.offsets + self.slope * spread * view.step)
+        there = setting.by_malicious(setting.initial + self.slope * spread * view.step)
         return Move(sent=there, positions=there)

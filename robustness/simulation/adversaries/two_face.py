@@ -25,9 +25,9 @@ class TwoFace:
         setting = view.setting
         low, high = setting.normal_range(view.p)
         sent = setting.by_malicious((low if view.step % 2 == 0 else high) + 0.0 * view.p)
-        lower = ((view.p - setting.offsets) <= (low + high) / 2)[:, setting.heads]
+        lower = (view.p <= (low + high) / 2)[:, setting.heads]
         if setting.model.byzantine:
-            told = np.where(lower, low, high) + setting.offsets[setting.tails]
+            told = np.where(lower, low, high)
             return Move(sent=sent, positions=sent, told=np.where(setting.from_malicious, told, np.nan))
         if not (setting.chooses_delays and setting.longest_delay >= 1):
             return Move(sent=sent, positions=sent)
