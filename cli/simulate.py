@@ -76,7 +76,7 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 @click.option("--alpha", type=float, help="The gain of every vehicle.  [default: 1.5/T]")
 @click.option("--weights", type=click.Choice(("uniform", "unit")), default="uniform", show_default=True)
 @click.option("--save", type=_FILE, metavar="FILE", help="Record the (first) run so that --replay gives it again.")
-@click.option("--plot", type=click.Path(path_type=Path), metavar="PATH", help="A picture; a folder for an experiment.")
+@click.option("--plot", type=click.Path(path_type=Path), metavar="PATH", help="A .png or .svg; or a folder for an experiment.")
 @click.option("--expect", type=click.Choice(("agreement", "split")), help="Exit with 10 when it ends otherwise.")
 @json_option
 @timeout_option
@@ -158,9 +158,9 @@ def _runs(ctx: click.Context, console: Console, options: dict[str, Any]) -> Exit
 
         write_run(options["save"], scenario, starts[0], outcomes[0])
     if options["plot"] is not None:
-        from robustness.figures.simulation import draw_run
+        from robustness.figures.simulation import Run, draw_runs
 
-        draw_run(scenario, starts[0], outcomes[0], options["plot"])
+        draw_runs([Run(scenario, starts[0], outcomes[0])], options["plot"])
     overall = _overall(outcomes)
     if options["as_json"]:
         console.document(SCHEMA, _document(scenario, starts, outcomes, overall))

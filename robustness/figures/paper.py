@@ -1,4 +1,4 @@
-"""The pictures of the experiments, one per case: ``robustness simulate --experiment NAME --plot FOLDER``."""
+"""The pictures of the experiments: ``robustness simulate --experiment NAME --plot FOLDER`` or ``FILE.svg``."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from robustness.figures.simulation import draw_run
+from robustness.figures.simulation import Run, draw_runs
 from robustness.simulation.experiments import CaseResult
 
 __all__ = ["draw_experiment"]
@@ -16,8 +16,11 @@ __all__ = ["draw_experiment"]
 _LAST_STEPS = {"setting-1": 2500, "setting-2": 8000}
 
 
-def draw_experiment(name: str, results: Sequence[CaseResult], folder: str | os.PathLike[str]) -> list[Path]:
+def draw_experiment(name: str, results: Sequence[CaseResult], path: str | os.PathLike[str]) -> list[Path]:
     """Draw every recorded case of an experiment for which the paper reports an outcome.
+
+    Positions, positions relative to the moving target, and velocities against time where vehicles move; values only
+    where they stand.
 
     Parameters
     ----------
@@ -25,28 +28,31 @@ def draw_experiment(name: str, results: Sequence[CaseResult], folder: str | os.P
         The experiment's name.
     results : sequence of CaseResult
         From :func:`robustness.simulation.experiments.run_experiment` with ``record=True``.
-    folder : path
-        Made if it is not there.
+    path : path
+        A file such as ``figures.svg`` for all cases, one below the other; or (without a suffix, or already there) a
+        folder for one ``NAME-CASE.png`` each, made if it is not there.
 
     Returns
     -------
     list of Path
-        ``NAME-CASE.png``: positions, positions relative to the moving target, and velocities against time where
-        vehicles move; values only where they stand.
+        What was written.
     """
-    place = Path(folder)
+    place, last_step = Path(path), _LAST_STEPS.get(name, 60)
+    runs = {
+        re.sub(r"[^a-z0-9]+", "-", case.name.lower()).strip("-"): Run(
+            case.scenario, case.start, outcome, f"{name}, {case.name}: {outcome.verdict.value}"
+        )
+        for case, outcome in ((result.case, result.outcome) for result in results)
+        if case.reported is not None
+    }
+    moving = any(run.scenario.target_speed != 0 for run in runs.values())
+    quantities = ("position", "relative-position", "velocity") if moving else ("relative-position", "velocity")
+    if place.suffix and not place.is_dir():
+        draw_runs(list(runs.values()), place, quantities=quantities, last_step=last_step)
+        return [place]
     place.mkdir(parents=True, exist_ok=True)
     written = []
-    for result in results:
-        case, outcome = result.case, result.outcome
-        if case.reported is None:
-            continue
-        path = place / f"{name}-{re.sub(r'[^a-z0-9]+', '-', case.name.lower()).strip('-')}.png"
-        moving = case.scenario.target_speed != 0
-        quantities = ("position", "relative-position", "velocity") if moving else ("relative-position", "velocity")
-        draw_run(
-            case.scenario, case.start, outcome, path, quantities=quantities,
-            title=f"{name}, {case.name}: {outcome.verdict.value}", last_step=_LAST_STEPS.get(name, 60),
-        )  # fmt: skip
-        written.append(path)
+    for case, run in runs.items():
+        written.append(place / f"{name}-{case}.png")
+        draw_runs([run], written[-1], quantities=quantities, last_step=last_step)
     return written

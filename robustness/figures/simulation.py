@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from robustness.simulation.scenario import Scenario, Start
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["QUANTITIES", "draw_run"]
+__all__ = ["QUANTITIES", "Run", "draw_runs"]
 
 #: What can be drawn: the axis label of each quantity.
 QUANTITIES = {
@@ -29,27 +29,32 @@ QUANTITIES = {
 _DASHES = ("-", "--", "-.", ":")
 
 
-def draw_run(
-    scenario: Scenario,
-    start: Start,
-    outcome: Outcome,
+class Run(NamedTuple):
+    """A recorded run (``simulate(..., record=True)``) and what to write above it."""
+
+    scenario: Scenario
+    start: Start
+    outcome: Outcome
+    title: str = ""
+
+
+def draw_runs(
+    runs: Sequence[Run],
     path: str | os.PathLike[str],
     *,
     quantities: Sequence[str] = ("relative-position", "velocity"),
-    title: str = "",
     last_step: int | None = None,
 ) -> None:
-    """Draw the normal vehicles of a recorded run against time, one panel per quantity.
+    """Draw the normal vehicles of recorded runs against time, one row per run and one panel per quantity.
 
     Parameters
     ----------
-    scenario, start, outcome
-        A run with a trajectory (``simulate(..., record=True)``).
+    runs : sequence of Run
+        At least one.
     path : str or path
         The format is that of its suffix: ``.png``, ``.svg``, ``.pdf``.
     quantities : sequence of str
         Of :data:`QUANTITIES`.
-    title : str
     last_step : int, optional
         Where the time axis ends.
 
@@ -58,9 +63,9 @@ def draw_run(
     MissingExtra
         When matplotlib is not installed.
     InvalidParameter
-        When the run was not recorded, a quantity is unknown, or the suffix names no format.
+        When a run was not recorded, a quantity is unknown, or the suffix names no format.
     """
-    if outcome.trajectory is None:
+    if not runs or any(run.outcome.trajectory is None for run in runs):
         raise InvalidParameter("only a recorded run can be drawn: simulate with record=True")
     for quantity in quantities:
         if quantity not in QUANTITIES:
@@ -69,20 +74,22 @@ def draw_run(
         from matplotlib.figure import Figure
     except ImportError:
         raise MissingExtra("drawing needs matplotlib: pip install 'graph-robustness[plot]'") from None
-    figure = Figure(figsize=(6.4 * len(quantities), 4.0), layout="constrained")
-    panels = figure.subplots(1, len(quantities), squeeze=False)[0]
-    for panel, quantity in zip(panels, quantities, strict=True):
-        _draw_quantity(panel, quantity, scenario, start, outcome, last_step)
-    panels[-1].legend(title="vehicle", loc="best", fontsize="small")
-    if title:
-        figure.suptitle(title)
+    figure = Figure(figsize=(6.4 * len(quantities), 4.0 * len(runs)), layout="constrained")
+    rows = figure.subplots(len(runs), len(quantities), squeeze=False)
+    for run, panels in zip(runs, rows, strict=True):
+        for panel, quantity in zip(panels, quantities, strict=True):
+            _draw_quantity(panel, quantity, run, last_step)
+        panels[-1].legend(title="vehicle", loc="best", fontsize="small")
+        if len(runs) > 1:
+            panels[0].set_title(run.title, loc="left")
+    if len(runs) == 1 and runs[0].title:
+        figure.suptitle(runs[0].title)
     _save(figure, path)
 
 
-def _draw_quantity(
-    panel: Axes, quantity: str, scenario: Scenario, start: Start, outcome: Outcome, last_step: int | None
-) -> None:
-    times, values = _values(quantity, scenario, outcome, last_step)
+def _draw_quantity(panel: Axes, quantity: str, run: Run, last_step: int | None) -> None:
+    scenario, start = run.scenario, run.start
+    times, values = _values(quantity, scenario, run.outcome, last_step)
     labels = scenario.network.union.labels
     normal = [i for i, label in enumerate(labels) if label not in start.malicious]
     for place, i in enumerate(normal):
@@ -96,7 +103,7 @@ def _draw_quantity(
 def _values(quantity: str, scenario: Scenario, outcome: Outcome, last_step: int | None) -> tuple[Floats, Floats]:
     """Return the time axis and the values ``(steps, n)``, thinned to what a picture can show."""
     states = outcome.trajectory
-    if states is None:  # draw_run has checked it
+    if states is None:  # draw_runs has checked it
         raise InvalidParameter("only a recorded run can be drawn: simulate with record=True")
     steps = np.arange(len(states.p))[: None if last_step is None else last_step + 1]
     steps = steps[:: max(1, len(steps) // 2000)]

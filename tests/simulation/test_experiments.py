@@ -14,7 +14,7 @@ import pytest
 from robustness.digraph import as_digraph
 from robustness.errors import InvalidParameter, MissingExtra, Undecided
 from robustness.figures.paper import draw_experiment
-from robustness.figures.simulation import draw_run
+from robustness.figures.simulation import Run, draw_runs
 from robustness.simulation import (
     EXPERIMENTS,
     Scenario,
@@ -203,43 +203,50 @@ class _Foreign(Constant):
 
 
 class TestPictures:
-    def recorded(self) -> tuple[Scenario, Start, Any]:
+    def recorded(self, title: str = "") -> Run:
         network = as_topology(nx.complete_graph(4), 1)
         scenario, start = Scenario(network, 1, steps=40, target_speed=3.0), random_start(network.union, [3], 0)
-        return scenario, start, simulate(scenario, [start], record=True)[0]
+        return Run(scenario, start, simulate(scenario, [start], record=True)[0], title)
 
     @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
     def test_the_same_run_gives_the_same_file(self, tmp_path: Path, suffix: str) -> None:
         pytest.importorskip("matplotlib")
         first, second = tmp_path / f"a.{suffix}", tmp_path / f"b.{suffix}"
         for path in (first, second):
-            draw_run(*self.recorded(), path, quantities=("position",), title="a run")
+            draw_runs([self.recorded("a run")], path, quantities=("position",))
         assert first.read_bytes() == second.read_bytes()
         assert first.stat().st_size > 5000
 
     def test_normal_vehicles_are_drawn(self, tmp_path: Path) -> None:
-        draw_run(*self.recorded(), tmp_path / "run.svg", quantities=("velocity",))
+        draw_runs([self.recorded()], tmp_path / "run.svg", quantities=("velocity",))
         picture = (tmp_path / "run.svg").read_text()
         assert picture.count("<!-- velocity v -->") == 1
         assert all(f"<!-- {label} -->" in picture for label in (0, 1, 2))
 
     def test_refusals(self, tmp_path: Path) -> None:
-        scenario, start, outcome = self.recorded()
+        run = self.recorded()
         with pytest.raises(InvalidParameter, match="suffix"):
-            draw_run(scenario, start, outcome, tmp_path / "run.xyz")
+            draw_runs([run], tmp_path / "run.xyz")
         with pytest.raises(InvalidParameter, match="quantity"):
-            draw_run(scenario, start, outcome, tmp_path / "run.png", quantities=("speed",))
-        with pytest.raises(InvalidParameter, match="recorded"):
-            draw_run(scenario, start, simulate(scenario, [start])[0], tmp_path / "run.png")
+            draw_runs([run], tmp_path / "run.png", quantities=("speed",))
+        unrecorded = run._replace(outcome=simulate(run.scenario, [run.start])[0])
+        for runs in ([unrecorded], [run, unrecorded], []):
+            with pytest.raises(InvalidParameter, match="recorded"):
+                draw_runs(runs, tmp_path / "run.png")
 
     def test_without_matplotlib(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         recorded = self.recorded()
         monkeypatch.setitem(__import__("sys").modules, "matplotlib.figure", None)
         with pytest.raises(MissingExtra, match="needs matplotlib"):
-            draw_run(*recorded, tmp_path / "run.png")
+            draw_runs([recorded], tmp_path / "run.png")
 
     def test_an_experiment_is_a_folder_of_pictures(self, tmp_path: Path) -> None:
         results = run_experiment(experiment_named("gap"), record=True)
         written = draw_experiment("gap", results, tmp_path / "new")
         assert {path.name for path in written} == {path.name for path in (tmp_path / "new").iterdir()}
         assert len(written) == 4
+
+    def test_or_one_picture_of_all_cases(self, tmp_path: Path) -> None:
+        results = run_experiment(experiment_named("gap"), record=True)
+        assert draw_experiment("gap", results, tmp_path / "gap.svg") == [tmp_path / "gap.svg"]
+        assert (tmp_path / "gap.svg").read_text().count("<!-- gap, corrected graph") == 4
