@@ -18,7 +18,7 @@ from cli.options import (
     talk_options,
     timeout_option,
 )
-from cli.output import Console, graph_document, pass_console
+from cli.output import Console, ProgressLine, graph_document, pass_console
 from cli.simulate import exit_code
 
 if TYPE_CHECKING:
@@ -76,7 +76,10 @@ def command(
     from robustness.simulation.finding import find_attack
 
     graph = load_graph(source)
-    found = find_attack(graph, f, model, algorithm=algorithm, time_limit=timeout, jobs=jobs, seed=seed)
+    with ProgressLine(console) as line:
+        found = find_attack(
+            graph, f, model, algorithm=algorithm, time_limit=timeout, jobs=jobs, seed=seed, progress=line
+        )
     if found.attack is not None:
         _carry_out(found.attack, steps)
         if output is not None:

@@ -46,6 +46,9 @@ _EXPERIMENTS = (
 #: Seconds for the search for an attack.
 _PATIENCE = 5.0
 
+#: Where a counterexample to a certificate is written when --save names no other place.
+_COUNTEREXAMPLE = "counterexample.json"
+
 _FILE = click.Path(dir_okay=False, path_type=Path)
 
 
@@ -75,8 +78,8 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 @click.option("--speed", type=float, default=0.0, show_default=True, help="The target speed.")
 @click.option("--alpha", type=float, help="The gain of every vehicle.  [default: 1.5/T]")
 @click.option("--weights", type=click.Choice(("uniform", "unit")), default="uniform", show_default=True)
-@click.option("--save", type=_FILE, metavar="FILE", help="Record the (first) run so that --replay gives it again.")
-@click.option("--plot", type=click.Path(path_type=Path), metavar="PATH", help="A .png or .svg; or a folder for an experiment.")
+@click.option("--save", type=_FILE, metavar="FILE", help="Record the (first) run for --replay.")
+@click.option("--plot", type=click.Path(path_type=Path), metavar="PATH", help="A picture, or a folder of an experiment.")
 @click.option("--expect", type=click.Choice(("agreement", "split")), help="Exit with 10 when it ends otherwise.")
 @json_option
 @timeout_option
@@ -89,7 +92,8 @@ def command(ctx: click.Context, console: Console, /, **options: Any) -> None:
     """Run resilient consensus on GRAPH under attack, and say whether it ends in agreement or split.
 
     Exit code 0 for agreement or split, 30 when undecided at the horizon; with --expect 10 for the other outcome. An
-    experiment ends in 10 when a case differs from what the paper reports. With --certificate, 10 is a counterexample.
+    experiment ends in 10 when a case differs from what the paper reports. With --certificate, 10 is a counterexample;
+    it is saved for --replay, as counterexample.json unless --save names another file.
     """
     if sum(options[name] is not None for name in ("source", "experiment", "replay")) != 1:
         raise click.UsageError("give one of GRAPH, --experiment and --replay.")
@@ -345,8 +349,9 @@ def _certificate(ctx: click.Context, console: Console, options: dict[str, Any]) 
     except OSError as problem:
         console.error(f"error: cannot read {options['certificate']}: {problem.strerror}")
         return ExitCode.BAD_INPUT
-    # click shows the bar on a terminal only.
-    with click.progressbar(length=1, label="battery", file=io.StringIO() if console.is_quiet else sys.stderr) as bar:
+    # Elsewhere than on a terminal click would still print the label.
+    is_shown = sys.stderr is not None and sys.stderr.isatty() and not console.is_quiet
+    with click.progressbar(length=1, label="battery", file=sys.stderr if is_shown else io.StringIO()) as bar:
 
         def advance(done: int, total: int) -> None:
             bar.length = total
@@ -354,7 +359,7 @@ def _certificate(ctx: click.Context, console: Console, options: dict[str, Any]) 
 
         report = validate_certificate(
             graph, evidence, f=options["f"], steps=steps, seed=options["seed"], jobs=options["jobs"],
-            time_limit=options["timeout"], progress=advance, save_to=options["save"],
+            time_limit=options["timeout"], progress=advance, save_to=options["save"] or Path(_COUNTEREXAMPLE),
         )  # fmt: skip
     found = report.counterexample
     if options["as_json"]:
@@ -370,6 +375,8 @@ def _certificate(ctx: click.Context, console: Console, options: dict[str, Any]) 
         console.document(SCHEMA, content)
     else:
         console.result(f"{report.verdict}: {report.reason}")
+    if found is not None and found.saved_as is not None:
+        console.talk(f"wrote {found.saved_as}: play it with 'simulate --replay'")
     if report.verdict == "undecided":
         return ExitCode.UNDECIDED
     return ExitCode.REFUTED if found is not None else exit_code(report.outcome, options["expect"])

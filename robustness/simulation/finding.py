@@ -7,11 +7,12 @@ model it is a solution of :mod:`robustness.trap_search`, which looks for M, S1 a
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
+from robustness.algorithms import Progress
 from robustness.checking import check_rs_robustness
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
@@ -65,6 +66,7 @@ def find_attack(
     time_limit: float | None = None,
     jobs: int = 1,
     seed: int = 0,
+    progress: Callable[[Progress], None] | None = None,
 ) -> Finding:
     """Find an attack of f nodes that splits the network for ever, or prove that none exists.
 
@@ -78,7 +80,7 @@ def find_attack(
         decided by traps. ``"delayed"``: with delays, f-total; a trap splits, (2f+1)-robustness promises agreement, and
         between the two the case is open. ``"malicious-local"`` and ``"delayed-local"``: with at most f malicious
         in-neighbours of every normal node; likewise open in between.
-    algorithm, time_limit, jobs, seed
+    algorithm, time_limit, jobs, seed, progress
         As for :func:`robustness.check_rs_robustness`; the time limit is for everything together, and the algorithm is
         used for checks of robustness (traps have one of their own).
 
@@ -102,7 +104,7 @@ def find_attack(
     if graph.n < 2:
         return Finding(None, "agreement", "fewer than two nodes: nobody to disagree with")
     deadline = float("inf") if time_limit is None else time.monotonic() + time_limit
-    options: dict[str, Any] = {"algorithm": algorithm, "jobs": jobs, "seed": seed}
+    options: dict[str, Any] = {"algorithm": algorithm, "jobs": jobs, "seed": seed, "progress": progress}
     if model == "malicious":
         return _find_violation(graph, f, deadline, options)
     return _find_by_search(graph, f, model, deadline, options)
@@ -130,7 +132,8 @@ def _find_by_search(graph: Digraph, f: int, model: str, deadline: float, options
         robust = check_rs_robustness(graph, 2 * f + 1, time_limit=half, **options).verdict
         if robust is Verdict.ROBUST:
             return Finding(None, "agreement", f"{2 * f + 1}-robust: f = {f} nodes do not split it, two-faced or not")
-    found = find_trap(graph, f, faces=faces, local=local, time_limit=_left(deadline), seed=options["seed"])
+    del options["algorithm"]
+    found = find_trap(graph, f, faces=faces, local=local, time_limit=_left(deadline), **options)
     if found.exists is None:
         return Finding(None, "undecided", f"whether f = {f} nodes split it was not decided: raise the time limit")
     if found.exists:

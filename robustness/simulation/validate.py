@@ -189,7 +189,7 @@ def validate_certificate(
     progress : callable, optional
         Called with the batches done and the batches in all.
     save_to : Path, optional
-        A folder for the counterexample.
+        A file for the counterexample, should there be one; folders on the way are made.
 
     Returns
     -------
@@ -208,7 +208,7 @@ def validate_certificate(
     else:
         r, s, pair = claim_of_certificate(graph, certificate)
     if pair is not None:
-        return _carry_out(graph, pair, f, steps)
+        return _saved(_carry_out(graph, pair, f, steps), save_to)
     regimes = promised_regimes(r, s, f)
     if not regimes or graph.n < 2:
         raise InvalidParameter(f"({r},{s})-robustness promises nothing for f = {f}: certify a greater r, or lower f")
@@ -225,7 +225,7 @@ def validate_certificate(
         for name in ADVERSARIES:
             tasks.append((_scenario(graph, regime, name, horizon), starts))
     deadline = float("inf") if time_limit is None else time.monotonic() + time_limit
-    return _play(tasks, exhaustive, jobs, deadline, progress, save_to)
+    return _saved(_play(tasks, exhaustive, jobs, deadline, progress), save_to)
 
 
 def _scenario(graph: Digraph, regime: Regime, adversary: str, steps: int) -> Scenario:
@@ -262,7 +262,6 @@ def _play(
     jobs: int,
     deadline: float,
     progress: Callable[[int, int], None] | None,
-    save_to: Path | None,
 ) -> ValidationReport:
     """Play every batch until one breaks its promise."""
     runs, undecided, done = 0, 0, 0
@@ -273,7 +272,7 @@ def _play(
                 progress(done, len(tasks))
             if found is not None:
                 reason = f"{found.outcome.verdict.value} under {found.scenario.rule} and {found.scenario.adversary}"
-                return ValidationReport("counterexample", runs, exhaustive, _saved(found, save_to), reason)
+                return ValidationReport("counterexample", runs, exhaustive, found, reason)
             if time.monotonic() > deadline and done < len(tasks):
                 reason = f"the time limit came after {done} of {len(tasks)} batches"
                 return ValidationReport("undecided", runs, exhaustive, None, reason)
@@ -318,10 +317,14 @@ def _play_batch(task: tuple[Scenario, list[Start]]) -> tuple[Counterexample | No
     return None, undecided, len(starts)
 
 
-def _saved(found: Counterexample, folder: Path | None) -> Counterexample:
-    if folder is None:
-        return found
-    folder.mkdir(parents=True, exist_ok=True)
-    place = folder / f"counterexample-{found.scenario.rule}-{found.start.seed}.json"
-    write_run(place, found.scenario, found.start, found.outcome)
-    return replace(found, saved_as=place)
+def _saved(report: ValidationReport, path: Path | None) -> ValidationReport:
+    """Write the counterexample to the file; a file that cannot be written takes nothing from the verdict."""
+    found = report.counterexample
+    if found is None or path is None:
+        return report
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_run(path, found.scenario, found.start, found.outcome)
+    except OSError as problem:
+        return replace(report, reason=f"{report.reason}; {path} cannot be written: {problem.strerror}")
+    return replace(report, counterexample=replace(found, saved_as=path))

@@ -17,6 +17,7 @@ from cli.exit_codes import ExitCode
 from cli.main import robustness
 from robustness.files import encode_topology
 from robustness.simulation import ADVERSARIES, EXPERIMENTS, RULES, SCHEDULES
+from robustness.simulation.evidence import Claim
 from robustness.simulation.finding import ATTACK_MODELS
 from robustness.simulation.models import FAULT_MODELS
 from robustness.threat_models import THREAT_MODELS
@@ -177,9 +178,30 @@ class TestSimulate:
         path.write_bytes(json.dumps(header).encode() + b"\n")
         found = document("simulate", "-", "--certificate", path, "-f", "1", "--steps", "200", graph=COMPLETE)
         assert (found["outcome"], found["validation"], found["exhaustive"]) == ("agreement", "confirmed", True)
+        assert found["counterexample"] is None
         assert run("simulate", "-", "--certificate", path, graph=CYCLE).exit_code == ExitCode.REFUTED
         path.write_bytes(b"not a certificate")
         assert run("simulate", "-", "--certificate", path, graph=COMPLETE).exit_code == ExitCode.BAD_INPUT
+
+
+    def test_a_counterexample_is_saved_and_replayed(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        """No true certificate has one, so the battery is given a false claim: a cycle called (2,2)-robust."""
+        monkeypatch.setattr("robustness.simulation.validate.claim_of_certificate", lambda *_: Claim(2, 2, None))
+        monkeypatch.chdir(tmp_path)
+        (tmp_path / "c6.cert").write_text("")
+        done = run("simulate", "-", "--certificate", "c6.cert", "-f", "1", graph=CYCLE)
+        assert done.exit_code == ExitCode.REFUTED
+        assert done.stdout.startswith("counterexample:")
+        assert "counterexample.json" in done.stderr
+        assert document("simulate", "--replay", "counterexample.json")["outcome"] == "split"
+        found = document("simulate", "-", "--certificate", "c6.cert", "--save", "mine.json", graph=CYCLE)
+        assert found["counterexample"] == "mine.json"
+        assert found["outcome"] == "split"
+
+    def test_nothing_but_the_verdict_off_a_terminal(self, tmp_path: Path) -> None:
+        run("certify", "-", "-r", "2", "-s", "2", "-o", tmp_path / "c6.cert", graph=CYCLE)
+        done = run("simulate", "-", "--certificate", tmp_path / "c6.cert", graph=CYCLE)
+        assert (done.exit_code, done.stderr) == (ExitCode.DONE, "")
 
 
 class TestExperiments:

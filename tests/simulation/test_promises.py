@@ -136,13 +136,22 @@ class TestValidation:
 
     def test_a_false_one_meets_a_counterexample_that_can_be_replayed(self, tmp_path: Path) -> None:
         """A cycle called (2,2)-robust."""
-        report = validate_certificate(nx.cycle_graph(6), claimed(2, 2), f=1, save_to=tmp_path / "new")
+        path = tmp_path / "new" / "run.json"
+        report = validate_certificate(nx.cycle_graph(6), claimed(2, 2), f=1, save_to=path)
         assert report.verdict == "counterexample"
         assert report.counterexample is not None
         assert report.outcome == "split"
-        assert report.counterexample.saved_as is not None
-        scenario, start = read_run(report.counterexample.saved_as)
+        assert report.counterexample.saved_as == path
+        scenario, start = read_run(path)
         assert simulate(scenario, [start]) == (report.counterexample.outcome,)
+
+    def test_a_place_that_cannot_be_written_takes_nothing_from_the_verdict(self, tmp_path: Path) -> None:
+        (tmp_path / "file").write_text("")
+        report = validate_certificate(nx.cycle_graph(6), claimed(2, 2), f=1, save_to=tmp_path / "file" / "run.json")
+        assert report.verdict == "counterexample"
+        assert report.counterexample is not None
+        assert report.counterexample.saved_as is None
+        assert "cannot be written" in report.reason
 
     def test_the_report_does_not_depend_on_the_workers(self) -> None:
         graph = nx.wheel_graph(5)
