@@ -78,8 +78,13 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 @click.option("--speed", type=float, default=0.0, show_default=True, help="The target speed.")
 @click.option("--alpha", type=float, help="The gain of every vehicle.  [default: 1.5/T]")
 @click.option("--weights", type=click.Choice(("uniform", "unit")), default="uniform", show_default=True)
-@click.option("--save", type=_FILE, metavar="FILE", help="Record the (first) run for --replay.")
-@click.option("--plot", type=click.Path(path_type=Path), metavar="PATH", help="A picture, or a folder of an experiment.")
+@click.option("--save", type=_FILE, metavar="FILE", help="Record the (first) run, or a counterexample.")
+@click.option(
+    "--plot",
+    type=click.Path(path_type=Path),
+    metavar="PATH",
+    help="A picture (.png, .svg, .pdf); with --experiment also a folder for one per case.",
+)
 @click.option("--expect", type=click.Choice(("agreement", "split")), help="Exit with 10 when it ends otherwise.")
 @json_option
 @timeout_option
