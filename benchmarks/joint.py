@@ -84,6 +84,12 @@ def random_waypoint(n: int, steps: int, draw: np.random.Generator) -> list[nx.Gr
     return graphs
 
 
+def independent(n: int, steps: int, draw: np.random.Generator) -> list[nx.Graph]:
+    """Return random graphs that have nothing to do with each other: what the shortcuts cost where they save little."""
+    pairs = np.argwhere(np.triu(np.ones((n, n), dtype=bool), 1))
+    return [graph_of(n, pairs[draw.random(len(pairs)) < 0.03].tolist()) for _ in range(steps)]
+
+
 def switching(n: int, links: list[tuple[int, int]], steps: int, draw: np.random.Generator) -> list[nx.Graph]:
     up = draw.random(len(links)) < 0.75
     graphs = []
@@ -109,6 +115,7 @@ CASES = (
     Case("on-off platoon", on_off, 10),
     Case("on-off 10-regular", on_off_regular, 50),
     Case("random waypoint", random_waypoint, 80),
+    Case("independent", independent, 10),
 )
 
 

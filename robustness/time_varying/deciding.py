@@ -7,6 +7,7 @@ In this order, all exact:
 3. *Subgraph*: when the arcs that proved an earlier union robust are all here, this one is robust. Adding arcs
    only enlarges every ``X_S^r``, so each condition of the definition that held still holds.
 4. *Growth*: an earlier seed still is robust and everything still grows from it (:mod:`robustness.time_varying.growth`).
+   Seeds are searched for and tried as long as they settle about as many windows as they cost searches.
 5. *Ahead*: where no seed shows up, the arcs that this union has in common with the next m are searched first.
    If they are robust, so are all these unions; m doubles when that works and halves when it does not.
 6. *Exact* search through the front. What it finds, a pair or a proof, serves the unions that follow.
@@ -44,6 +45,9 @@ RULES = frozenset({"equal", "pair", "subgraph", "growth", "ahead"})
 
 #: How many pairs, proofs and seeds are kept, most recently useful first.
 _KEPT = 8
+
+#: How many searches seeds may cost before the first has to have paid, and out of how many exact searches they get one.
+_SEED_CREDIT, _SEED_SHARE = 64, 4
 
 #: The seconds that one search may take whose only use is to save others; how far ahead to look first and at most.
 _EXTRA_SECONDS = 1.0
@@ -92,7 +96,9 @@ class UnionDecider:
         self._pairs: list[_Pair] = []
         self._proofs: list[_Proof] = []
         self._seeds: list[Seed] = []
-        self._seed_luck, self._ahead_luck, self._ahead = _Luck(), _Luck(), 0
+        self._ahead_luck, self._ahead = _Luck(), 0
+        #: Windows that growth settled, searches that seeds cost, and the exact searches of unions.
+        self._grown = self._seed_searches = self._exact_searches = 0
         #: How often each rule settled a window, and how many searches were made for it.
         self.settled: Counter[str] = Counter()
         self.searches = 0
@@ -126,12 +132,19 @@ class UnionDecider:
         for proof in self._proofs:
             if present[proof.places].all():
                 _keep(self._proofs, proof)
+                self._grown += proof.grown
                 return UnionVerdict(Verdict.ROBUST, "subgraph", growth=proof.evidence)
-        for seed in self._seeds:
+        for seed in self._seeds if self._seeds_pay() else ():
             if (growth := self._grow(window, present, seed)) is not None:
                 _keep(self._seeds, seed)
+                self._grown += 1
                 return UnionVerdict(Verdict.ROBUST, "growth", growth=growth.evidence)
         return None
+
+    def _seeds_pay(self) -> bool:
+        """Return whether seeds have earned what they cost, so that where nothing lasts they cost little for nothing."""
+        earned = _SEED_CREDIT + self._grown + self._exact_searches // _SEED_SHARE
+        return self._seed_searches <= earned
 
     def _grow(self, window: SlidingUnion, present: _Marks, seed: Seed) -> _Proof | None:
         """Return the arcs that prove growth from ``seed`` if there is one, and keep them."""
@@ -141,7 +154,7 @@ class UnionDecider:
         order, core = grown
         kind = seed.proof(present, self.r)
         evidence = kind and Growth(self.r, self.s, seed.members, np.array(order, dtype=np.int32), kind)
-        proof = _Proof(core, evidence)
+        proof = _Proof(core, evidence, grown=True)
         if "subgraph" in self._reuse:
             # Of the arcs that would do, those that stay longest were taken.
             _keep(self._proofs, proof)
@@ -167,6 +180,7 @@ class UnionDecider:
         if seconds is not None and seconds <= 0:
             return UnionVerdict(Verdict.UNDECIDED, "exact", reason=TIME_IS_UP)
         self.searches += 1
+        self._exact_searches += 1
         graph = self.sequence.digraph(present)
         result = self._ask(graph, seconds)
         if result.witness is not None and "pair" in self._reuse:
@@ -177,10 +191,9 @@ class UnionDecider:
 
     def _learn(self, window: SlidingUnion, present: _Marks) -> Growth | None:
         """Look for a seed of a union that is robust; without one, all its arcs are the proof to reuse."""
-        if "growth" in self._reuse and self._seed_luck.tries():
+        if "growth" in self._reuse and self._seeds_pay():
             seed = find_seed(self._arcs, present, self.r, self.s, self._is_robust_seed)
             growth = None if seed is None else self._grow(window, present, seed)
-            self._seed_luck.note(growth is not None)
             if seed is not None and growth is not None:
                 _keep(self._seeds, seed)
                 return growth.evidence
@@ -191,6 +204,7 @@ class UnionDecider:
         return None
 
     def _is_robust_seed(self, graph: Digraph) -> bool:
+        self._seed_searches += 1
         return self._extra_search(graph) is Verdict.ROBUST
 
     def _extra_search(self, graph: Digraph) -> Verdict:
@@ -246,10 +260,14 @@ class _Luck:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Proof:
-    """Arcs, as places in the universe, that are enough to be robust; and the growth they come from, if certifiable."""
+    """Arcs, as places in the universe, that are enough to be robust.
+
+    ``grown`` says that they come from a seed; ``evidence`` is that growth, if a certificate can carry it.
+    """
 
     places: npt.NDArray[np.int64]
     evidence: Growth | None
+    grown: bool = False
 
 
 class _Pair:

@@ -127,6 +127,14 @@ def test_growth_and_common_arcs_both_occur() -> None:
     assert found.stats["searches"] < found.stats["windows"] / 2
 
 
+def test_where_nothing_lasts_seeds_are_given_up() -> None:
+    draw = np.random.default_rng(2)
+    pairs = [(u, v) for u in range(40) for v in range(40) if u != v]
+    rows = [[pairs[k] for k in np.flatnonzero(draw.random(len(pairs)) < 0.06)] for _ in range(200)]
+    found = check_joint_robustness(TimeVaryingGraph.from_arcs(range(40), rows), 3, window=5, all_windows=True)
+    assert found.stats["searches"] < 2 * found.stats["windows"]
+
+
 def arcs_of(graph: rb.Digraph) -> tuple[Arcs, np.ndarray]:
     pairs = np.array(list(graph.arcs()))
     return Arcs(graph.n, pairs[:, 1], pairs[:, 0]), np.ones(len(pairs), dtype=bool)
