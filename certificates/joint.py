@@ -24,6 +24,7 @@ __all__ = [
     "FORMAT",
     "MAX_SEQUENCE_BYTES",
     "MAX_STEPS",
+    "MAX_VALUE",
     "SEQUENCE_FORMAT",
     "VerifiedJointClaim",
     "encode_sequence",
@@ -38,7 +39,7 @@ MAX_SEQUENCE_BYTES = 2**28
 MAX_STEPS = 2**20
 
 #: The greatest r and the longest window that a claim may have.
-_MOST = 2**31
+MAX_VALUE = 2**31
 
 _Arc = tuple[int, int]
 
@@ -230,8 +231,8 @@ def _claim_numbers(claim: dict[str, Any], n: int) -> tuple[int, int, int]:
     if claim["property"] != "jointly-rs-robust":
         raise MalformedCertificate(f"the property is 'jointly-rs-robust', not {_shown(claim['property'])}")
     r, s, length = (claim[name] for name in ("r", "s", "window"))
-    if not all(type(value) is int and 1 <= value <= _MOST for value in (r, s, length)):
-        raise MalformedCertificate(f"r, s and window are integers in 1..{_MOST}")
+    if not all(type(value) is int and 1 <= value <= MAX_VALUE for value in (r, s, length)):
+        raise MalformedCertificate(f"r, s and window are integers in 1..{MAX_VALUE}")
     if s > n:
         raise MalformedCertificate(f"s lies in 1..n = 1..{n}, not {s}")
     return r, s, length

@@ -147,17 +147,17 @@ def command(
             )
         except Overrun:
             report = survey.overrun(window)
-    if picture is not None:
-        from robustness.figures.joint import draw_joint
-
-        draw_joint(sequence, report.shown, report.curve, picture)
     written = _write(report, certificate, canonical)
     if as_json:
         asked = {} if certificate is canonical is None else {"files": written}
         console.document(SCHEMA, report.document() | asked)
     else:
-        console.result("\n".join(_lines(report, source, whole=console.is_verbose)))
+        lines = _lines(report, source, with_curve=with_curve or picture is not None, whole=console.is_verbose)
+        console.result("\n".join(lines))
     if picture is not None:
+        from robustness.figures.joint import draw_joint
+
+        draw_joint(sequence, report.result, report.curve, picture, shown=report.shown)
         console.talk(f"wrote {picture}")
     for path in written.values():
         console.talk(f"wrote {path}")
@@ -193,9 +193,10 @@ class Survey:
     ) -> Report:
         """Answer the question of the command line, and what goes with it."""
         result = shown = self._decide(window, all_windows)
-        if drawn and window is None and result.shorter_fails is not None:
-            # At the smallest length nothing fails: the length below it makes the picture.
-            shown = self._decide(result.shorter_fails.length, all_windows=True)
+        failing = result.violation or result.shorter_fails
+        if drawn and window is None and failing is not None:
+            # At the smallest length nothing fails: the length below it makes the picture, or one that no length mends.
+            shown = self._decide(failing.length, all_windows=True)
         report = Report(self.sequence, result, self._curve() if with_curve else None, shown)
         return replace(report, certificate=self._certificate(result)) if certified else report
 
@@ -262,7 +263,7 @@ def _violation_document(found: Violation | None) -> dict[str, Any] | None:
     return {"start": found.start, "length": found.length, "witness": witness}
 
 
-def _lines(report: Report, source: str, *, whole: bool) -> Iterator[str]:
+def _lines(report: Report, source: str, *, with_curve: bool, whole: bool) -> Iterator[str]:
     sequence, result = report.sequence, report.result
     yield _headline(result)
     if result.violation is not None:
@@ -277,6 +278,8 @@ def _lines(report: Report, source: str, *, whole: bool) -> Iterator[str]:
         yield f"windows    {result.stats['windows']} settled by {rules or 'none'}; {result.stats['searches']} searches"
     if report.curve is not None:
         yield from _curve_table(report.curve)
+    elif with_curve:
+        yield "curve      not known: the time limit was reached"
     yield f"time       {result.seconds:.3f} s"
 
 
@@ -286,7 +289,7 @@ def _headline(result: JointResult) -> str:
     match result.verdict.value:
         case "robust":
             verdict = click.style("robust:", fg="green", bold=True)
-            smallest = "" if result.asked_window else "; no smaller number will do"
+            smallest = "; no smaller number will do" if result.shorter_fails is not None else ""
             return f"{verdict} the network is {name} over every {_count(result.window or 0)}{smallest}"
         case "not-robust":
             verdict = click.style("not robust:", fg="red", bold=True)

@@ -14,7 +14,7 @@ import numpy as np
 
 from certificates import verify_joint
 from certificates.graph import digest
-from certificates.joint import FORMAT, encode_sequence
+from certificates.joint import FORMAT, MAX_VALUE, encode_sequence
 from robustness.algorithms import Progress
 from robustness.certification import certify, encode
 from robustness.digraph import GraphLike
@@ -99,6 +99,8 @@ def joint_certificate(
         return None
     if result.r == 0:
         raise InvalidParameter("every sequence is jointly (0,s)-robust by convention: nothing to certify")
+    if max(result.r, result.examined) > MAX_VALUE:
+        raise InvalidParameter(f"a certificate speaks of r and windows up to {MAX_VALUE}: ask about a smaller one")
     if result.verdict is Verdict.NOT_ROBUST:
         length, evidence, body = _refutation(sequence, result)
     else:

@@ -83,8 +83,9 @@ def check_joint_robustness(
     Returns
     -------
     JointResult
-        ROBUST with ``window``; NOT_ROBUST with ``violation``, the first window that fails and its re-checked pair
-        (for the smallest length: the whole trace or one period, which shows that no length will do); or UNDECIDED.
+        ROBUST with ``window``; NOT_ROBUST with ``violation``, the first window that fails (the first found to, when
+        ``reason`` says that an earlier one was not decided) and its re-checked pair (for the smallest length: the
+        whole trace or one period, which shows that no length will do); or UNDECIDED.
         A window longer than a finite trace is NOT_ROBUST without a pair: up to the horizon there is no such window.
 
     Raises
@@ -178,7 +179,7 @@ class _Survey:
             reason = f"no window of {length} steps fits in a trace of {len(self._sequence)} steps"
             return self._result(Verdict.NOT_ROBUST, examined=length, reason=reason)
         chart = _Chart()
-        violation, undecided = None, ""
+        violation, undecided, unsure = None, "", ""
         for start in starts:
             if self._decider.expired():
                 undecided = TIME_IS_UP
@@ -187,13 +188,14 @@ class _Survey:
             chart.add(start, key, union)
             if union.verdict is Verdict.NOT_ROBUST and violation is None:
                 violation = self._violation(start, length, union)
+                unsure = undecided and f"a window before it was not decided ({undecided})"
                 if not all_windows:
                     break
             elif union.verdict is Verdict.UNDECIDED:
                 undecided = undecided or union.reason
         fields = chart.fields(self._sequence, length)
         if violation is not None:
-            return self._result(Verdict.NOT_ROBUST, violation=violation, **fields)
+            return self._result(Verdict.NOT_ROBUST, violation=violation, reason=unsure, **fields)
         if undecided:
             return self._result(Verdict.UNDECIDED, reason=undecided, **fields)
         return self._result(Verdict.ROBUST, window=length, **fields)
@@ -207,14 +209,16 @@ class _Survey:
             return self._result(Verdict.UNDECIDED, at_least=length, reason=union.reason)
         if union.verdict is Verdict.NOT_ROBUST:
             violation = self._violation(whole_start, whole, union)
-            what = "the whole trace" if sequence.period is None else "one whole period"
+            tried, most = ("of any length", "one whole period")
+            if sequence.period is None:
+                tried, most = ("up to the horizon", "the whole trace")
             chart = _Chart()
             chart.add(whole_start, key, union)
             return self._result(
                 Verdict.NOT_ROBUST,
                 violation=violation,
                 at_least=length,
-                reason=f"even the union of {what} is not robust enough",
+                reason=f"no window {tried} will do, as even the union of {most} is not robust enough",
                 **{**chart.fields(sequence, whole), "window_unions": ()},
             )
         return self._sweep(length, map_windows)

@@ -178,6 +178,8 @@ class JointResult:
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
         """Render in notebooks: a small table of what is known."""
         rows = [("verdict", self.summary()), ("seconds", f"{self.seconds:.3f}")]
+        if self.reason:
+            rows.append(("reason", self.reason))
         if self.within_tau is not None:
             rows.append((f"window at most tau = {self.tau}", "yes" if self.within_tau else "no"))
         for name, found in (("violating window", self.violation), ("one step shorter fails", self.shorter_fails)):

@@ -73,6 +73,11 @@ class TimeVaryingGraph:
         *,
         step_name: Callable[[int], str] = "step {}".format,
     ) -> None:
+        if not isinstance(graphs, Iterable):
+            raise InvalidParameter(
+                f"a time-varying graph is made of an iterable of graphs, not {type(graphs).__name__}; "
+                "a function of the step goes to TimeVaryingGraph.from_function with a horizon"
+            )
         codes: list[npt.NDArray[np.int64]] = []
         seen: dict[int, npt.NDArray[np.int64]] = {}
         keep_ids = isinstance(graphs, (list, tuple))  # their graphs live on, so an id names one graph

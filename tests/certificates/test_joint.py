@@ -128,6 +128,13 @@ def test_one_node() -> None:
         certify_joint(STAR, 0)
 
 
+def test_numbers_beyond_the_format() -> None:
+    sequence = TimeVaryingGraph.from_arcs(range(2), [[(0, 1)]], period=1)
+    for r, window in ((2**31 + 1, 1), (1, 2**31 + 1)):
+        with pytest.raises(InvalidParameter, match="up to 2147483648"):
+            certify_joint(sequence, r, window=window)
+
+
 def test_no_certificate_without_a_verdict() -> None:
     result, certificate = certify_joint(STAR, 2, time_limit=1e-9)
     assert (result.verdict, certificate) == (Verdict.UNDECIDED, None)

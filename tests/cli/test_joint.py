@@ -16,7 +16,7 @@ from cli.main import robustness
 from robustness.definitions import is_violation
 from robustness.files import write_topology
 from robustness.results import RobustnessResult
-from robustness.time_varying import TimeVaryingGraph, deciding, encode_sequence, read_sequence
+from robustness.time_varying import JointResult, TimeVaryingGraph, deciding, encode_sequence, read_sequence
 
 #: Node k is heard by all others at step k; 2-robust over every 3 steps, 3-robust over every 5.
 STAR = TimeVaryingGraph.from_arcs(range(5), [[(k, v) for v in range(5) if v != k] for k in range(5)], period=5)
@@ -127,7 +127,9 @@ def test_text_of_a_refutation() -> None:
     assert lines[0] == "not robust: the network is not jointly 2-robust over every 2 steps"
     assert lines[1] == "violating window: steps 0 to 1"
     lines = joint("-r", "4", "--tau", "9").stdout.splitlines()
-    assert "even the union of one whole period is not robust enough" in lines[0]
+    assert lines[0].endswith(
+        "4-robust: no window of any length will do, as even the union of one whole period is not robust enough"
+    )
     assert "tau        no window, so none within the delay bound" in lines
 
 
@@ -146,6 +148,9 @@ def test_text_of_other_corners() -> None:
         in joint("-r", "1", "--tau", "1", sequence=trace).stdout
     )
     assert "smallest L none" in joint("-r", "1", "--curve", sequence=empty).stdout
+    at_once = joint("-r", "1", sequence=trace).stdout.splitlines()
+    assert at_once[0] == "robust: the network is jointly 1-robust over every 1 step"
+    assert "curve      not known" in joint("-r", "2", "--timeout", "1e-9", "--curve").stdout
     undecided = joint("-r", "2", "--timeout", "1e-9").stdout
     first = "undecided: whether the network is jointly 2-robust is not known (the time limit was reached)"
     assert undecided.splitlines()[0] == first
@@ -183,6 +188,20 @@ def test_picture(tmp_path: Path, arguments: list[str]) -> None:
     assert path.read_bytes() == first, "the same question gives the same file"
 
 
+@pytest.mark.parametrize(
+    ("arguments", "length", "failing"),
+    [(["-r", "2"], 2, 5), (["-r", "2", "--window", "2"], 2, 5), (["-r", "4"], 5, 5), (["-r", "1"], 1, 0)],
+)
+def test_what_the_picture_shows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], length: int, failing: int
+) -> None:
+    drawn: list[JointResult] = []
+    monkeypatch.setattr("robustness.figures.joint.draw_joint", lambda *_, shown: drawn.append(shown))
+    joint(*arguments, "--picture", str(tmp_path / "joint.svg"))
+    (shown,) = drawn
+    assert (shown.examined, len(shown.failing_starts()), len(shown.window_unions)) == (length, failing, 5)
+
+
 def test_picture_of_every_verdict_a_prefix_and_a_wrapped_window(tmp_path: Path) -> None:
     wheel, empty = nx.wheel_graph(5), nx.empty_graph(5)
     sequence = TimeVaryingGraph([wheel, empty, wheel, wheel, empty], period=3)
@@ -196,10 +215,14 @@ def test_picture_of_every_verdict_a_prefix_and_a_wrapped_window(tmp_path: Path) 
     assert "violating window: steps 2 to 3" in outcome.stdout
 
 
-def test_a_picture_that_cannot_be_written_is_a_usage_error(tmp_path: Path) -> None:
-    outcome = joint("-r", "2", "--picture", str(tmp_path / "nowhere" / "joint.png"))
+@pytest.mark.parametrize(
+    ("name", "message"), [("nowhere/joint.png", "error: cannot write"), ("joint.odd", "error: a picture's suffix is")]
+)
+def test_a_picture_that_cannot_be_written_is_a_usage_error(tmp_path: Path, name: str, message: str) -> None:
+    outcome = joint("-r", "2", "--picture", str(tmp_path / name))
     assert outcome.exit_code == 2
-    assert outcome.stderr.startswith("error: cannot write")
+    assert outcome.stderr.startswith(message)
+    assert outcome.stdout.startswith("robust: "), "the answer is not lost"
 
 
 def test_without_matplotlib_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

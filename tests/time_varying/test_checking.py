@@ -57,7 +57,9 @@ def test_the_period_decides_what_a_prefix_can_only_delay() -> None:
     never = check_joint_robustness(TimeVaryingGraph([full, full, empty], 1), 2)
     assert never.verdict is rb.Verdict.NOT_ROBUST
     assert (never.violation.start, never.violation.length) == (2, 1)
-    assert "one whole period" in never.reason
+    assert never.reason.startswith("no window of any length will do, as even the union of one whole period")
+    trace = check_joint_robustness([full, full, empty], 3)
+    assert trace.reason.startswith("no window up to the horizon will do, as even the union of the whole trace")
 
 
 def test_a_window_longer_than_the_trace_is_not_robust_up_to_the_horizon() -> None:
@@ -143,6 +145,7 @@ def test_a_violation_after_an_undecided_window_still_refutes(monkeypatch: pytest
     undecided_when(lambda graph: graph.arc_count == 12, monkeypatch)
     found = check_joint_robustness([full, empty], 2, window=1)
     assert (found.verdict, found.violation.start) == (rb.Verdict.NOT_ROBUST, 1)
+    assert found.reason == "a window before it was not decided (too hard)"
 
 
 def test_a_wrong_pair_is_an_internal_error(monkeypatch: pytest.MonkeyPatch) -> None:

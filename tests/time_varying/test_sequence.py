@@ -189,6 +189,11 @@ def test_a_window_has_at_least_one_step(length: object) -> None:
         TimeVaryingGraph(path_steps()).window_starts(length)
 
 
+def test_a_function_needs_a_horizon() -> None:
+    with pytest.raises(rb.InvalidParameter, match=r"not function; a function of the step goes to .*from_function"):
+        TimeVaryingGraph(lambda k: nx.empty_graph(3))
+
+
 def test_a_list_of_graphs_is_a_finite_trace() -> None:
     assert as_time_varying(path_steps()).period is None
     with pytest.raises(rb.InvalidParameter, match="not Graph"):
