@@ -128,7 +128,8 @@ def _find_by_search(graph: Digraph, f: int, model: str, deadline: float, options
     robust = None
     if not exact:
         # A promise of agreement spares the search; where it takes long, the search gets half of the time.
-        half = None if deadline == float("inf") else max(deadline - time.monotonic(), 0) / 2
+        left = _left(deadline)
+        half = None if left is None else left / 2
         robust = check_rs_robustness(graph, 2 * f + 1, time_limit=half, **options).verdict
         if robust is Verdict.ROBUST:
             return Finding(None, "agreement", f"{2 * f + 1}-robust: f = {f} nodes do not split it, two-faced or not")

@@ -92,7 +92,12 @@ def simulate(
     batch = Batch(scenario, starts, jobs)
     if batch.promise is not None:
         warnings.warn(batch.promise, PromiseWarning, stacklevel=2)
-    observer = Observer(batch.setting, scenario, starts, batch.promise, record=record)
+    try:
+        observer = Observer(batch.setting, scenario, starts, batch.promise, record=record)
+    except MemoryError:
+        raise InvalidParameter(
+            f"{scenario.steps} steps of {len(starts)} runs do not fit into memory: run fewer at once"
+        ) from None
     with ThreadPoolExecutor(batch.jobs) as pool:
         batch.play_history()
         for step in range(scenario.steps):

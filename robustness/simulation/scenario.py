@@ -87,6 +87,8 @@ class Scenario:
             raise InvalidParameter(f"a run has at least 1 step, not {self.steps!r}")
         if not (np.isfinite(self.T) and self.T > 0):
             raise InvalidParameter(f"the sampling period T is a positive number, not {self.T!r}")
+        if not np.isfinite(self.target_speed):
+            raise InvalidParameter(f"the target speed is a finite number, not {self.target_speed!r}")
         if not (np.isfinite(self.tolerance) and self.tolerance > 0):
             raise InvalidParameter(f"the tolerance is a positive number, not {self.tolerance!r}")
         if self.dwell is not None and not 1 <= self.dwell <= self.steps:

@@ -259,6 +259,12 @@ class TestAttack:
             code = ExitCode.DONE if expected == outcome else ExitCode.REFUTED
             assert run(*arguments, "--expect", expected, graph=graph).exit_code == code
 
+    @pytest.mark.parametrize("model", ATTACK_MODELS)
+    def test_hardly_any_time(self, model: str) -> None:
+        """An answer or none, but no error."""
+        done = run("attack", "-", "--model", model, "--timeout", "1e-9", graph=WHEEL)
+        assert done.exit_code in (ExitCode.DONE, ExitCode.REFUTED, ExitCode.UNDECIDED), done.output
+
     def test_where_the_theory_is_open(self) -> None:
         done = run("attack", "-", "--model", "delayed", graph=encode_topology(nx.complete_graph(4)))
         assert done.exit_code == ExitCode.UNDECIDED

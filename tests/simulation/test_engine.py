@@ -239,6 +239,11 @@ class TestLimits:
         with pytest.raises(Undecided, match="time limit"):
             simulate(Scenario(topology, 2, steps=10**6), starts_on(topology), time_limit=0.01)
 
+    def test_more_steps_than_memory_has_room_for(self) -> None:
+        topology = NETWORKS["fixed"]
+        with pytest.raises(InvalidParameter, match="memory"):
+            simulate(Scenario(topology, 2, steps=10**15), starts_on(topology))
+
     def test_no_starts_no_outcomes(self) -> None:
         assert simulate(Scenario(NETWORKS["fixed"], 1), []) == ()
         assert simulate_plainly(Scenario(NETWORKS["fixed"], 1), []) == ()
@@ -263,6 +268,7 @@ class TestLimits:
             ({"f": True}, "f is an integer"),
             ({"steps": 0}, "at least 1 step"),
             ({"T": 0.0}, "sampling period"),
+            ({"target_speed": float("nan")}, "target speed"),
             ({"tolerance": 0.0}, "tolerance"),
             ({"dwell": 7, "steps": 6}, "dwell"),
             ({"rule": "msr"}, "update rule"),
