@@ -25,6 +25,7 @@ CASES = (
     ("dp-msr", "synchronous", 0, "sine"),
     ("adp-msr", "periodic", 11, "sine"),
     ("adp-msr", "random", 4, "constant"),
+    ("adp-msr", "delayed", 3, "two-face"),
 )
 NODES, DENSITY, FAULTS = 50, 0.2, 2
 PLAIN_RUNS, PLAIN_STEPS = 2, 15

@@ -114,12 +114,14 @@ class Attack:
     def story(self) -> str:
         """Return the attack in words."""
         groups = f"S1 = {_text(self._ordered(self.S1))} at {_LOW:g}, S2 = {_text(self._ordered(self.S2))} at {_HIGH:g}"
-        who = _text(self._ordered(self.malicious)) if self.malicious else "nobody"
+        scene = f"{groups}, all others at {_BETWEEN:g}"
+        if not self.malicious:
+            return f"{scene}; nobody need be malicious"
+        who = _text(self._ordered(self.malicious))
         if self.kind == "violation":
-            return f"{groups}, all others at {_BETWEEN:g}; {who} malicious, holding the start for ever"
+            return f"{scene}; {who} malicious, holding the start for ever"
         means = "by delays of 0 or 1 step" if self.delayed else "by telling each so"
-        faces = f"showing S1 always {_LOW:g} and S2 {_HIGH:g}"
-        return f"{groups}, all others at {_BETWEEN:g}; {who} malicious, {faces}, {means}"
+        return f"{scene}; {who} malicious, showing S1 always {_LOW:g} and S2 {_HIGH:g}, {means}"
 
     def as_dict(self) -> dict[str, Any]:
         """Return the attack as JSON-ready values, bound to the graph by its digest."""

@@ -164,8 +164,13 @@ def _necessity() -> tuple[Case, ...]:
     cases = []
     two_cliques = nx.compose(nx.complete_graph(range(5)), nx.complete_graph(range(5, 10)))
     two_cliques.add_edges_from((i, i + 5) for i in range(5))
-    networks = (("cycle of 6", nx.cycle_graph(6), 1), ("two 5-cliques and a matching", two_cliques, 1))
-    for name, network, f in (*networks, ("paper's Proposition 1 graph", two_f_robust_counterexample(2, "paper"), 2)):
+    networks = (
+        ("cycle of 6", nx.cycle_graph(6), 1),
+        ("two 5-cliques and a matching", two_cliques, 1),
+        # 2f-robust, so without a malicious node there would be no split.
+        *((f"paper's Proposition 1 graph, f = {f}", two_f_robust_counterexample(f, "paper"), f) for f in (1, 2)),
+    )
+    for name, network, f in networks:
         witness = check_rs_robustness(network, f + 1, f + 1).witness
         if witness is None:
             raise InternalError(f"the {name} was expected to violate ({f + 1},{f + 1})-robustness: please report")

@@ -19,7 +19,7 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-__all__ = ["advance", "extremes", "fill_uniform"]
+__all__ = ["advance", "extremes", "fill_uniform", "worst_delays"]
 
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _FIRST, _SECOND = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
@@ -130,6 +130,26 @@ def advance(  # type: ignore[no-untyped-def]
                 u = total - alpha[i] * q[b, i]
                 new_p[b, i] = (own + T * q[b, i]) + half * u
                 new_q[b, i] = q[b, i] + T * u
+
+
+@numba.njit(nogil=True, cache=True)
+def worst_delays(step, bound, ring, channel, heads, above, delays):  # type: ignore[no-untyped-def]
+    """Write to ``delays (B, A)`` the least delay that shows each receiver the greatest value, or the least.
+
+    The greatest where ``above (B, n)`` is nonzero at the receiver ``heads (A,)``, the least elsewhere, among the
+    delays 0 .. bound.
+    """
+    slots = ring.shape[0]
+    now = step % slots
+    for b in range(delays.shape[0]):
+        for e in range(delays.shape[1]):
+            place, up = channel[e], above[b, heads[e]]
+            chosen, best = 0, ring[now, b, place]
+            for late in range(1, bound + 1):
+                value = ring[now - late if late <= now else now - late + slots, b, place]
+                if value > best if up else value < best:
+                    chosen, best = late, value
+            delays[b, e] = chosen
 
 
 @numba.njit(nogil=True, cache=True)

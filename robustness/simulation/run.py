@@ -27,6 +27,7 @@ from robustness.simulation.observer import Observer
 from robustness.simulation.outcome import Outcome
 from robustness.simulation.rules import rule_named
 from robustness.simulation.scenario import Scenario, Start
+from robustness.simulation.schedules import Past
 from robustness.simulation.sensing import board_for
 from robustness.simulation.topology import extended_by
 
@@ -249,11 +250,7 @@ class Batch:
 
     def _delays(self, view: View) -> npt.NDArray[np.int64]:
         """Return the delays of this step, ``(1 or B, A)``, within their bound."""
-
-        def recall(delay: int) -> Floats:
-            return np.asarray(self.ring[(view.step - delay) % self.slots][:, self.board.channel])
-
-        delays = self.scenario.schedule.delay_rule.delays(view, recall)
+        delays = self.scenario.schedule.delay_rule.delays(view, Past(self.ring, self.board.channel))
         chosen = self.move.delays
         return np.ascontiguousarray(delays if chosen is None else np.where(chosen >= 0, chosen, delays))
 

@@ -31,6 +31,7 @@ __all__ = [
     "DelayRule",
     "EveryStep",
     "NoDelays",
+    "Past",
     "PeriodicUpdates",
     "RandomDelays",
     "RandomUpdates",
@@ -41,8 +42,21 @@ __all__ = [
 
 Flags = npt.NDArray[np.uint8]
 Steps = npt.NDArray[np.int64]
-#: ``recall(d)``: what every arc would deliver with delay d, shape ``(B, A)``.
-Recall = Callable[[int], Floats]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Past:
+    """What could be delivered: with delay d, arc e of run b delivers ``ring[(step - d) % len(ring), b, channel[e]]``.
+
+    Attributes
+    ----------
+    ring : array, shape ``(H, B, C)``
+        The announcements of the last H steps, H greater than every delay.
+    channel : integer array, shape ``(A,)``
+    """
+
+    ring: Floats
+    channel: npt.NDArray[np.int64]
 
 
 class UpdateRule(Protocol):
@@ -67,7 +81,7 @@ class DelayRule(Protocol):
     def adversarial(self) -> bool:
         """Whether the adversary may choose the delays."""
 
-    def delays(self, view: View, recall: Recall) -> Steps:
+    def delays(self, view: View, past: Past) -> Steps:
         """Return the delay of every arc at this step, shape ``(1 or B, A)``."""
 
 
@@ -182,7 +196,7 @@ class NoDelays:
         """False."""
         return False
 
-    def delays(self, view: View, recall: Recall) -> Steps:
+    def delays(self, view: View, past: Past) -> Steps:
         """Return zeros."""
         return np.zeros((1, view.setting.graph.arc_count), dtype=np.int64)
 
@@ -216,7 +230,7 @@ class ConstantDelays:
         """False."""
         return False
 
-    def delays(self, view: View, recall: Recall) -> Steps:
+    def delays(self, view: View, past: Past) -> Steps:
         """Return the table."""
         graph = view.setting.graph
         row = np.full(graph.arc_count, self.steps, dtype=np.int64)
@@ -240,7 +254,7 @@ class RandomDelays:
         """False."""
         return False
 
-    def delays(self, view: View, recall: Recall) -> Steps:
+    def delays(self, view: View, past: Past) -> Steps:
         """Return the draws of this step."""
         setting = view.setting
         return setting.draws.integers("delays", view.step, setting.graph.arc_count, 0, self.bound)
@@ -264,14 +278,17 @@ class AdversarialDelays:
         """True."""
         return True
 
-    def delays(self, view: View, recall: Recall) -> Steps:
+    def delays(self, view: View, past: Past) -> Steps:
         """Return the delay that serves each arc's receiver worst."""
+        from robustness.simulation.kernels import worst_delays
+
         setting = view.setting
         low, high = setting.normal_range(view.p)
-        above = (view.p > (low + high) / 2)[:, setting.heads]
-        sign = np.where(above, 1.0, -1.0)
-        past = np.stack([sign * recall(delay) for delay in range(self.bound + 1)])
-        return np.asarray(np.argmax(past, axis=0), dtype=np.int64)
+        delays = np.empty((len(view.p), len(past.channel)), dtype=np.int64)
+        worst_delays(
+            view.step, self.bound, past.ring, past.channel, setting.heads, view.p > (low + high) / 2, delays
+        )
+        return delays
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,6 +37,7 @@ from robustness.simulation.schedules import (
 from robustness.time_varying import TimeVaryingGraph
 
 FIVE = as_topology(nx.complete_graph(range(1, 6)), 1)
+START = random_start(FIVE.union, [4], 0)
 
 
 def played(schedule: Schedule, steps: int = 60, runs: int = 4) -> tuple[np.ndarray, np.ndarray]:
@@ -94,6 +95,25 @@ def test_the_papers_example() -> None:
     for node, offset in ((0, 6), (1, 9), (2, 11), (4, 4)):
         assert np.flatnonzero(updates[:, 0, node]).tolist() == [offset, offset + 12, offset + 24]
     assert schedule.oldest == 11
+
+
+@pytest.mark.parametrize("step", [-3, 0, 2, 11])
+def test_the_worst_delay_is_the_least_that_shows_the_extreme(step: int) -> None:
+    """Against the definition, arc by arc; few values, so that many are equal."""
+    draws = np.random.default_rng(step + 9)
+    batch = Batch(Scenario(FIVE, 1, schedule=Schedule(EveryStep(), AdversarialDelays(3))), [START, START])
+    batch.ring = draws.integers(0, 3, batch.ring.shape).astype(float)
+    batch.p = draws.integers(0, 5, batch.p.shape).astype(float)
+    batch.act(step)
+    view = View(batch.setting, step, batch.p, batch.q, batch.previous, batch.last_update)
+    delays, setting = batch._delays(view), batch.setting
+    for b in range(2):
+        normal = batch.p[b][~setting.malicious[b]]
+        middle = (normal.min() + normal.max()) / 2
+        for e, (sender, receiver) in enumerate(zip(setting.tails, setting.heads, strict=True)):
+            values = [batch.ring[(step - late) % 4, b, sender] for late in range(4)]
+            extreme = max(values) if batch.p[b, receiver] > middle else min(values)
+            assert delays[b, e] == values.index(extreme)
 
 
 def test_adversarial_delays_show_everybody_its_own_end() -> None:
