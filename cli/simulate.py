@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from robustness.simulation.experiments import CaseResult
     from robustness.simulation.outcome import Outcome
     from robustness.simulation.scenario import Scenario, Start
+    from robustness.simulation.topology import Topology
 
 __all__ = ["SCHEMA", "command", "exit_code", "node_named"]
 
@@ -65,12 +66,14 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
     type=click.Choice(_ADVERSARIES),
     default="auto",
     show_default=True,
-    help="auto: the attack that splits this network, where one is found; else greedy.",
+    help="auto: the attack that splits this network, where 5 seconds find one; else greedy.",
 )
 @click.option("--rule", type=click.Choice(_RULES), default="adp-msr", show_default=True)
 @click.option("--model", type=click.Choice(_MODELS), default="malicious", show_default=True)
 @click.option("--schedule", type=click.Choice(_SCHEDULES), default="synchronous", show_default=True)
 @click.option("--tau", type=click.IntRange(min=0), help="The bound on the age of values.  [default: 0 or 3]")
+@click.option("--over-time", is_flag=True, help="GRAPH is a sequence of graphs, as 'joint' reads it.")
+@click.option("--period", "repeat", type=click.IntRange(min=1), metavar="P", help="With it: the last P steps repeat.")
 @click.option("--active", multiple=True, metavar="NODE", help="Senses actively; may be repeated.")
 @click.option("--steps", type=click.IntRange(min=1), default=1000, show_default=True)
 @click.option("--runs", type=click.IntRange(min=1), default=1, show_default=True, help="Random starts.")
@@ -106,6 +109,10 @@ def command(ctx: click.Context, console: Console, /, **options: Any) -> None:
         raise click.UsageError("--attack and --certificate need the GRAPH they are about.")
     if options["attack_file"] and options["certificate"]:
         raise click.UsageError("give one of --attack and --certificate.")
+    if options["over_time"] and (options["source"] is None or options["certificate"]):
+        raise click.UsageError("--over-time says what GRAPH is, and a certificate is about one graph.")
+    if options["repeat"] is not None and not options["over_time"]:
+        raise click.UsageError("--period belongs to a sequence: give --over-time as well.")
     if options["experiment"] is not None:
         code = _experiment(console, options)
     elif options["certificate"] is not None:
@@ -152,7 +159,7 @@ def _runs(ctx: click.Context, console: Console, options: dict[str, Any]) -> Exit
         console.error(f"error: {problem}")
         return ExitCode.BAD_INPUT
     if recorded is None:
-        scenario, starts = _scenario(load_graph(options["source"]), options)
+        scenario, starts = _scenario(_network(options), options)
         if options["adversary"] == "auto" and not options["malicious"]:
             scenario, starts = _worst(scenario, starts, options)
     elif isinstance(recorded, Attack):
@@ -188,7 +195,7 @@ def _recorded(options: dict[str, Any]) -> Attack | tuple[Scenario, Start] | None
         return read_run(options["replay"])
     if options["attack_file"] is None:
         return None
-    graph = load_graph(options["source"])
+    graph = _network(options).union
     try:
         document = json.loads(options["attack_file"].read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError) as problem:
@@ -196,28 +203,51 @@ def _recorded(options: dict[str, Any]) -> Attack | tuple[Scenario, Start] | None
     return Attack.from_dict(graph, document)
 
 
+def _network(options: dict[str, Any]) -> Topology:
+    """Return the network that GRAPH names: one graph, or with --over-time a sequence of them."""
+    from robustness.simulation.topology import as_topology
+
+    if not options["over_time"]:
+        return as_topology(load_graph(options["source"]), 1)
+    from robustness.time_varying import read_sequence
+
+    return as_topology(read_sequence(options["source"], period=options["repeat"]), options["steps"])
+
+
 def _scenario_of_attack(attack: Attack, options: dict[str, Any]) -> Scenario:
     """Return the attack's scenario under the rule and gains of the options; they change nothing about the split."""
+    from dataclasses import replace
+
+    changes: dict[str, Any] = {}
+    if options["over_time"]:
+        # Whatever the step, a vehicle hears at most what it hears in the union, which the attack is made for.
+        tau = max(options["tau"] or 0, attack.schedule.oldest)
+        changes = {"network": _network(options), "schedule": replace(attack.schedule, tau=tau)}
     return attack.scenario(
         options["steps"], rule=options["rule"], T=options["period"], target_speed=options["speed"],
-        alpha=options["alpha"], weights=options["weights"],
+        alpha=options["alpha"], weights=options["weights"], **changes,
     )  # fmt: skip
 
 
-def _scenario(graph: Digraph, options: dict[str, Any]) -> tuple[Scenario, list[Start]]:
+def _scenario(network: Topology, options: dict[str, Any]) -> tuple[Scenario, list[Start]]:
     """Return the scenario and the starts that the options describe."""
+    from dataclasses import replace
+
     from robustness.simulation.adversaries import ADVERSARIES
     from robustness.simulation.scenario import Scenario, random_start
     from robustness.simulation.schedules import schedule_named
-    from robustness.simulation.topology import Topology
 
+    graph, turn = network.union, len(network.sequence)
     bound = 1 if options["f"] is None else options["f"]
-    tau = options["tau"] if options["tau"] is not None else 0 if options["schedule"] == "synchronous" else 3
+    default = turn - 1 + (0 if options["schedule"] == "synchronous" else 3)
+    tau = default if options["tau"] is None else options["tau"]
+    # A link may be gone for a turn less one step. What tau has beyond that is for waits and delays.
+    schedule = replace(schedule_named(options["schedule"], max(tau - turn + 1, 0)), tau=tau)
     malicious = [node_named(graph, text) for text in options["malicious"]] or _most_heard(graph, bound)
     adversary = ADVERSARIES["greedy" if options["adversary"] == "auto" else options["adversary"]]()
     scenario = Scenario(
-        Topology((graph,)), bound, options["rule"], options["model"], adversary,
-        schedule_named(options["schedule"], tau), options["steps"], options["period"], options["speed"],
+        network, bound, options["rule"], options["model"], adversary,
+        schedule, options["steps"], options["period"], options["speed"],
         options["alpha"], options["weights"],
         active=frozenset(node_named(graph, text) for text in options["active"]),
     )  # fmt: skip

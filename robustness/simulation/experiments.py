@@ -207,7 +207,7 @@ def _corollary_2() -> tuple[Case, ...]:
     cases = []
     for tau in (3, 5):
         late = Schedule(delay_rule=AdversarialDelays(1), tau=tau)
-        scenario = Scenario(as_topology(sequence, 3), 1, adversary=TwoFace(), schedule=late, steps=3000)
+        scenario = Scenario(as_topology(sequence, 3000), 1, adversary=TwoFace(), schedule=late, steps=3000)
         start = _spread_out(scenario.network.union, [0])
         name = f"complete graph in thirds, tau = {tau}"
         cases.append(Case(name, f"jointly 3-robust over {window} steps", "agreement", scenario, start))
@@ -217,7 +217,7 @@ def _corollary_2() -> tuple[Case, ...]:
         part.add_nodes_from(broken)
     trap = broken.graph["trap"]
     attack = attack_from_trap(broken, 1, trap["M"], trap["S1"], trap["S2"])
-    topology = as_topology(TimeVaryingGraph(halves, period=2), 2)
+    topology = as_topology(TimeVaryingGraph(halves, period=2), 1000)
     late = Schedule(delay_rule=AdversarialDelays(1), tau=2)
     scenario = attack.scenario(1000, network=topology, schedule=late)
     cases.append(Case("trapped wheel in halves, tau = 2", "jointly 2-robust only", "split", scenario, attack.start()))

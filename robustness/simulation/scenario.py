@@ -57,8 +57,8 @@ class Scenario:
         Agreement means a spread of at most this multiple of the normal vehicles' initial spread (of 1 if that is 0),
         and speeds relative to the target of at most as much per unit of time ...
     dwell : int or None
-        ... at each of the last ``dwell`` states; None: 10, or twice tau + 1 or twice the turn of a network that
-        changes, whichever is most. A shorter run decides nothing.
+        ... at each of the last ``dwell`` states; None: 10, or twice tau + 1, or for a network that changes twice its
+        turn (half the run when that is less), whichever is most. A shorter run decides nothing.
     """
 
     network: Topology
@@ -103,7 +103,7 @@ class Scenario:
             return self.dwell
         # A schedule or a sequence of graphs may do nothing for a whole turn.
         turn = 1 if self.network.fixed else min(len(self.network.sequence), self.steps)
-        return max(10, 2 * (self.schedule.oldest + 1), 2 * turn)
+        return max(10, 2 * (self.schedule.oldest + 1), min(2 * turn, self.steps // 2))
 
 
 @dataclass(frozen=True)

@@ -96,7 +96,9 @@ def as_topology(network: GraphLike | Callable[[int], GraphLike], steps: int) -> 
     if isinstance(network, TimeVaryingGraph):
         if network.period is None and len(network) < steps:
             raise InvalidParameter(f"a finite trace of {len(network)} steps has no step {steps - 1}: give it a period")
-        stored = [network.stored_step(step) for step in range(max(steps, 1))]
+        # What repeats from the first step on is kept as one turn; after a prefix, the steps are written out.
+        length = len(network) if network.period == len(network) else max(steps, 1)
+        stored = [network.stored_step(step) for step in range(length)]
         place = {k: at for at, k in enumerate(dict.fromkeys(stored))}
         return Topology(tuple(network.graph_at(k) for k in place), tuple(place[k] for k in stored))
     if not callable(network):

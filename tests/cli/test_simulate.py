@@ -145,6 +145,9 @@ class TestSimulate:
             (("-", "--attack", "missing.json"), ExitCode.BAD_INPUT),
             (("-", "--certificate", "missing.cert"), ExitCode.BAD_INPUT),
             (("-", "--attack", "a", "--certificate", "b"), ExitCode.USAGE),
+            (("-", "--period", "2"), ExitCode.USAGE),
+            (("-", "--over-time", "--certificate", "b"), ExitCode.USAGE),
+            (("--experiment", "gap", "--over-time"), ExitCode.USAGE),
             (("missing.json",), ExitCode.BAD_INPUT),
         ],
     )
@@ -167,6 +170,27 @@ class TestSimulate:
         first = document("simulate", "-", "--save", saved, "--plot", picture, "--adversary", "random", graph=WHEEL)
         assert document("simulate", "--replay", saved) == first
         assert picture.read_bytes().startswith(b"\x89PNG")
+
+    def test_over_time(self, tmp_path: Path) -> None:
+        """The complete graph in thirds agrees under delays; the wheel in halves is split by its trap."""
+        for whole, parts, outcome in ((nx.complete_graph(6), 3, "agreement"), (nx.wheel_graph(5), 2, "split")):
+            edges = sorted(whole.edges)
+            steps = [[[*edge] for edge in edges[k::parts]] for k in range(parts)]
+            path, options = tmp_path / "steps.json", ("--over-time", "--tau", "3", "--steps", "600")
+            document_of = {"nodes": sorted(whole), "period": parts, "steps": steps, "directed": False}
+            path.write_text(json.dumps(document_of))
+            found = document("simulate", path, *options, "--schedule", "delayed")
+            assert found["outcome"] == outcome
+            if outcome == "split":
+                assert found["runs"][0]["exact"] is True
+                attack = tmp_path / "attack.json"
+                run("attack", "-", "--model", "delayed", "-o", attack, graph=encode_topology(whole))
+                assert document("simulate", path, *options, "--attack", attack)["runs"][0]["exact"] is True
+
+    def test_tuples_as_labels(self) -> None:
+        """The groups of an attack are watched by label, whatever the labels are."""
+        found = document("simulate", "-", graph=encode_topology(nx.grid_2d_graph(2, 3)))
+        assert (found["outcome"], found["runs"][0]["exact"]) == ("split", True)
 
     def test_a_certificate_is_put_to_the_test(self, tmp_path: Path) -> None:
         from certificates.verification import FORMAT

@@ -188,6 +188,22 @@ class TestTopology:
         topology = as_topology(sequence, 7)
         assert [topology.present(k).sum() for k in range(7)] == [6, 4, 4, 4, 4, 4, 4]
 
+    def test_a_sequence_that_repeats_is_kept_as_one_turn(self) -> None:
+        assert as_topology(TimeVaryingGraph([self.TRIANGLE, self.PATH], period=2), 700).sequence == (0, 1)
+        assert as_topology(TimeVaryingGraph([self.TRIANGLE, self.PATH], period=2), 1).sequence == (0, 1)
+
+    @pytest.mark.parametrize("period", [3, 2, None])
+    def test_a_network_that_changes_agrees_within_the_run(self, period: int | None) -> None:
+        """Also where the steps are written out: a turn as long as the run must not ask for more than the run."""
+        edges = sorted(nx.complete_graph(5).edges)
+        parts = [nx.Graph(edges[k % 3 :: 3]) for k in range(3 if period else 400)]
+        for part in parts:
+            part.add_nodes_from(range(5))
+        topology = as_topology(TimeVaryingGraph(parts, period=period), 400)
+        scenario = Scenario(topology, 0, schedule=Schedule(tau=3), steps=400)
+        (outcome,) = simulate(scenario, [random_start(topology.union, [], 0)])
+        assert outcome.verdict.value == "agreement"
+
     def test_a_trace_that_ends_too_soon_is_refused(self) -> None:
         with pytest.raises(InvalidParameter, match="has no step 3"):
             as_topology(TimeVaryingGraph([self.TRIANGLE, self.PATH]), 4)
