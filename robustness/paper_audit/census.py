@@ -106,6 +106,4 @@ def count_row(n: int, f: int, connected: Iterable[Digraph]) -> CensusRow:
     free: list[Digraph] = []
     for k in (necessary & ~sufficient).nonzero()[0].tolist():
         (trapped if find_trap(graphs[k], f).decided() else free).append(graphs[k])
-    return CensusRow(
-        n, f, len(graphs), int(sufficient.sum()), int((~necessary).sum()), tuple(trapped), tuple(free)
-    )
+    return CensusRow(n, f, len(graphs), int(sufficient.sum()), int((~necessary).sum()), tuple(trapped), tuple(free))

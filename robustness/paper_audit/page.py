@@ -6,13 +6,27 @@ from pathlib import Path
 
 from robustness.constructions.lemma_audit import Finding
 from robustness.constructions.lemma_audit import audit as audit_of_lemma_1
-from robustness.paper_audit import about_graphs, about_runs
+from robustness.paper_audit import about_graphs, about_motion, about_notions, about_proposition, about_runs
 from robustness.paper_audit.about_runs import battery, counted
 from robustness.paper_audit.census import CensusRow, census
-from robustness.paper_audit.claims import Claim, Outcome
+from robustness.paper_audit.claims import PLACES, Claim, Outcome
 from robustness.paper_audit.drawing import svg
 
-__all__ = ["census_table", "write"]
+__all__ = ["CLAIMS", "census_table", "write"]
+
+#: Every claim but those of Lemma 1, in the order of the paper; what the paper says before what we say.
+CLAIMS: tuple[Claim, ...] = tuple(
+    sorted(
+        (
+            *about_notions.CLAIMS,
+            *about_motion.CLAIMS,
+            *about_graphs.CLAIMS,
+            *about_proposition.CLAIMS,
+            *about_runs.CLAIMS,
+        ),
+        key=lambda claim: (PLACES.index(claim.place), not claim.is_paper),
+    )
+)
 
 _FIGURES = "figures/audit"
 
@@ -26,7 +40,7 @@ def write(folder: Path) -> None:
     figures.mkdir(parents=True, exist_ok=True)
     drawn: list[str] = []
     rows = []
-    for claim in (*about_graphs.CLAIMS, *about_runs.CLAIMS):
+    for claim in CLAIMS:
         outcome = claim.check()
         rows.append(_row(claim, outcome, len(drawn) + 1))
         if outcome.counterexample is not None:
