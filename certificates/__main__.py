@@ -18,7 +18,7 @@ from certificates.joint import MAX_SEQUENCE_BYTES, VerifiedJointClaim, verify_jo
 from certificates.tolerance import VerifiedToleranceClaim, verify_tolerance
 from certificates.verification import MAX_CERTIFICATE_BYTES, VerifiedClaim, verify
 
-__all__ = ["main"]
+__all__ = ["main", "read_at_most"]
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -61,12 +61,14 @@ def main(arguments: list[str] | None = None) -> int:
 def _verify(question: argparse.Namespace) -> VerifiedClaim | VerifiedJointClaim | VerifiedToleranceClaim:
     """Return the claim that the files prove, read in the order of the command line."""
     if question.command == "verify-joint":
-        sequence = _read(question.sequence, MAX_SEQUENCE_BYTES)
-        return verify_joint(sequence, _read(question.certificate, MAX_CERTIFICATE_BYTES))
+        sequence = read_at_most(question.sequence, MAX_SEQUENCE_BYTES)
+        return verify_joint(sequence, read_at_most(question.certificate, MAX_CERTIFICATE_BYTES))
     if question.command == "verify-tolerance":
-        graph = _read(question.graph, MAX_GRAPH_BYTES)
-        return verify_tolerance(graph, _read(question.certificate, MAX_CERTIFICATE_BYTES))
-    return verify(_read(question.graph, MAX_GRAPH_BYTES), _read(question.certificate, MAX_CERTIFICATE_BYTES))
+        graph = read_at_most(question.graph, MAX_GRAPH_BYTES)
+        return verify_tolerance(graph, read_at_most(question.certificate, MAX_CERTIFICATE_BYTES))
+    return verify(
+        read_at_most(question.graph, MAX_GRAPH_BYTES), read_at_most(question.certificate, MAX_CERTIFICATE_BYTES)
+    )
 
 
 def _fail(code: int, message: str) -> int:
@@ -74,7 +76,7 @@ def _fail(code: int, message: str) -> int:
     return code
 
 
-def _read(path: Path, limit: int) -> bytes:
+def read_at_most(path: Path, limit: int) -> bytes:
     """Return the file's bytes, or somewhat more than ``limit`` of them: enough for the verifier to refuse it."""
     data = bytearray()
     with path.open("rb") as file:

@@ -44,7 +44,7 @@ def label_key(label: object, depth: int = 0) -> tuple[int, object]:
         return (0, label)
     if type(label) is str:
         if any("\ud800" <= character <= "\udfff" for character in label):
-            raise MalformedGraph(f"a string label holds Unicode text without lone surrogates, not {label!r}")
+            raise MalformedGraph(f"a string label holds Unicode text without lone surrogates, not {label[:40]!r}")
         return (1, label)
     if type(label) is tuple and depth < _LABEL_DEPTH:
         return (2, tuple(label_key(part, depth + 1) for part in label))

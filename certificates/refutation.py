@@ -15,7 +15,7 @@ from certificates.rules import Contradiction, Question, State, excludes, settle
 __all__ = ["MAX_NODES", "check_refutation"]
 
 #: Masks take n*n/4 bytes; a refutation is for graphs of at most this many nodes.
-MAX_NODES = 20_000
+MAX_NODES = 10_000
 
 #: Opcodes: BRANCH + 2 * kind + side, EXCLUDE + 2 * (blockers - 1) + side.
 PROPAGATE, ROOT, BRANCH, EXCLUDE = 0, 1, 2, 6
@@ -26,13 +26,13 @@ SATISFIED, MEMBER = 0, 1
 def check_refutation(graph: CanonicalGraph, r: int, s: int, body: bytes) -> int:
     """Return the number of tree nodes of a transcript that refutes every violating pair; raise otherwise.
 
-    Time is linear in the bytes of the transcript, with a factor polynomial in n; the tree is at most 4 n deep;
-    memory O(n^2).
+    Time is linear in the bytes of the transcript, with a factor polynomial in n, and bounded by ``rules.MAX_LOOKS``;
+    the tree is at most 4 n deep; memory O(n^2).
 
     Raises
     ------
     MalformedCertificate
-        When the graph has more than ``MAX_NODES`` nodes.
+        When the graph has more than ``MAX_NODES`` nodes, or the work exceeds ``MAX_LOOKS``.
     RejectedCertificate
         When a step does not hold, or the tree is incomplete, or something follows it.
     """

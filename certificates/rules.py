@@ -13,16 +13,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from certificates.errors import MalformedCertificate
 from certificates.graph import CanonicalGraph
 
-__all__ = ["Contradiction", "Question", "State", "excludes", "settle"]
+__all__ = ["MAX_LOOKS", "Contradiction", "Question", "State", "excludes", "settle"]
+
+#: Looks at a node, each a few operations on masks, that a refutation may ask for: half an hour or so.
+MAX_LOOKS = 2**32
 
 
 class Contradiction(Exception):
     """The state stands for no violating pair. It closes a branch of the tree and never leaves the kernel."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Question:
     """Is this graph (r,s)-robust: in- and out-neighbours as bit masks, the needs, and how many nodes may be exempt."""
 
@@ -30,6 +34,8 @@ class Question:
     heard_by: tuple[int, ...]
     need: tuple[int, ...]
     spare: int
+    #: Looks at nodes so far, each weighted with the length of a mask.
+    looks: int = 0
 
     @classmethod
     def of(cls, graph: CanonicalGraph, r: int, s: int) -> Question:
@@ -40,6 +46,18 @@ class Question:
                 heard_by[j] |= 1 << i
         hears = tuple(sum(1 << j for j in heard) for heard in graph.hears)
         return cls(hears, tuple(heard_by), tuple(max(0, len(heard) - r + 1) for heard in graph.hears), s - 1)
+
+    def look_at(self, nodes: int) -> None:
+        """Count a step that looks at these nodes, so that no transcript keeps the checker busy for ever.
+
+        Raises
+        ------
+        MalformedCertificate
+            When there have been too many.
+        """
+        self.looks += (1 + nodes.bit_count()) * (1 + len(self.need) // 1024)
+        if self.looks > MAX_LOOKS:
+            raise MalformedCertificate(f"a refutation may ask for at most {MAX_LOOKS} looks at nodes")
 
     def hearing(self, nodes: int) -> int:
         """Return who hears any of ``nodes``."""
@@ -137,6 +155,7 @@ def _peel_and_force(question: Question, state: State, side: int, nodes: int) -> 
     sure = possible | members
     loose = state.C[side] & ~sure
     spared = min(state.allowed[side], state.left)
+    question.look_at(nodes)
     while nodes:
         bit = nodes & -nodes
         nodes ^= bit
@@ -199,6 +218,7 @@ def _suffices(question: Question, state: State, side: int, t: int) -> bool:
     while Q and not state.T[side] & ~Q:
         sure, kept = Q | state.F[side], Q
         loose = state.C[side] & ~sure
+        question.look_at(nodes)
         while nodes:
             bit = nodes & -nodes
             nodes ^= bit
@@ -221,6 +241,7 @@ def excludes(question: Question, state: State, side: int, j: int, blockers: list
     of the further exempt nodes, at most ``left``, those on the side of I, at most ``allowed``, serve |I| needs, the
     others one. Less than ``sum_I k_i + k_j`` is not enough.
     """
+    question.look_at(0)
     other = 1 - side
     sure = state.P[other] | state.F[other]
     own = question.hears[j] & (state.P[side] | state.F[side])

@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations
-from math import comb
 from typing import Any
 
 from certificates.errors import MalformedCertificate, Misuse, RejectedCertificate
@@ -170,13 +169,23 @@ def _check_removals(
         raise MalformedCertificate(f"the lengths add up to {sum(lengths)} bytes, but {len(body)} follow the header")
     if graph.n < f + 2:
         raise RejectedCertificate(f"removals need at least f + 2 = {f + 2} nodes")
-    if len(lengths) != comb(graph.n, f):
-        raise RejectedCertificate(f"there are {comb(graph.n, f)} sets of {f} nodes, but {len(lengths)} certificates")
+    if not _counts_subsets(len(lengths), graph.n, f):
+        raise RejectedCertificate(f"{len(lengths)} certificates are not one for every set of {f} of {graph.n} nodes")
     place = tree_nodes = 0
     for removed, length in zip(combinations(range(graph.n), f), lengths, strict=True):
         tree_nodes += _check_robust(without(graph, removed), body[place : place + length], f + 1)
         place += length
     return len(lengths), tree_nodes
+
+
+def _counts_subsets(number: int, n: int, f: int) -> bool:
+    """Return whether ``number`` is n over f. The partial products only grow, so none is computed far beyond it."""
+    subsets = 1
+    for k in range(min(f, n - f)):
+        subsets = subsets * (n - k) // (k + 1)
+        if subsets > number:
+            return False
+    return subsets == number
 
 
 def encode(graph: CanonicalGraph) -> bytes:

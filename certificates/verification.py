@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
+from certificates.derivation import Derivation
 from certificates.errors import MalformedCertificate, Misuse, RejectedCertificate
 from certificates.graph import CanonicalGraph, decode_graph
 from certificates.refutation import check_refutation
@@ -88,12 +89,15 @@ def verify(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedClaim:
             tree_nodes = _check_direct(graph, r, s, _keys(evidence, "the evidence", "kind"), body)
         case "robust", "growth":
             tree_nodes = _check_growth(graph, r, s, _keys(evidence, "the evidence", "kind seed order proof"), body)
+        case "robust", "derivation":
+            keys = "kind seed proof steps ids"
+            tree_nodes = _check_derivation(graph, r, s, _keys(evidence, "the evidence", keys), body)
         case "robust" | "not-robust", _:
             raise MalformedCertificate(f"there is no evidence of kind {_shown(kind)} for the verdict {verdict!r}")
         case _:
             raise MalformedCertificate(f"a verdict is 'robust' or 'not-robust', not {_shown(verdict)}")
-    if kind in ("violation", "degree") and body:
-        raise MalformedCertificate(f"{len(body)} bytes follow the header, but evidence of kind {kind!r} has no body")
+    if kind == "violation" and body:
+        raise MalformedCertificate(f"{len(body)} bytes follow the header, but evidence of kind 'violation' has no body")
     return VerifiedClaim(verdict, r, s, kind, graph.sha256, graph.n, graph.arc_count, tree_nodes)
 
 
@@ -174,6 +178,8 @@ def _check_direct(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any
     least = min(map(len, graph.hears))
     if evidence["kind"] != "degree":
         raise MalformedCertificate(f"a proof is of kind 'degree' or 'refutation', not {_shown(evidence['kind'])}")
+    if body:
+        raise MalformedCertificate(f"{len(body)} bytes follow the header, but evidence of kind 'degree' has no body")
     if least < graph.n // 2 + r - 1:
         raise RejectedCertificate(f"the least in-degree {least} is below floor(n/2) + r - 1 = {graph.n // 2 + r - 1}")
     return 0
@@ -199,12 +205,29 @@ def _check_growth(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any
         "",
     )
     tree_nodes = _check_direct(induced, r, s, proof, body)
-    if proof["kind"] == "degree" and body:
-        raise MalformedCertificate(f"{len(body)} bytes follow the header, but a proof of kind 'degree' has no body")
     present = set(seed)
     for node in order:
         heard = sum(j in present for j in graph.hears[node])
         if heard < r + s - 1:
             raise RejectedCertificate(f"node {node} hears {heard} earlier nodes, below r + s - 1 = {r + s - 1}")
         present.add(node)
+    return tree_nodes
+
+
+def _check_derivation(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any], body: bytes) -> int:
+    """A seed proven by ``proof``, steps that make the graph of it, and ``ids``: which node of it each node made is."""
+    seed = _keys(evidence["seed"], "the seed", "nodes arcs r s")
+    proof = _keys(evidence["proof"], "the proof of the seed", "kind")
+    made = Derivation(seed["nodes"], seed["arcs"], seed["r"], seed["s"])
+    hears = tuple(tuple(sorted(heard)) for heard in made.hears)
+    start = CanonicalGraph(tuple(range(len(hears))), hears, "")
+    tree_nodes = _check_direct(start, made.r, made.s, proof, body)
+    made.take(evidence["steps"])
+    made.weaken(r, s)
+    ids = _id_list(evidence["ids"], graph.n, "ids")
+    if len(ids) != len(made.hears) or sorted(ids) != list(range(graph.n)):
+        raise RejectedCertificate(f"ids do not name each of the {graph.n} nodes once, for {len(made.hears)} nodes made")
+    for i, heard in zip(ids, made.hears, strict=True):
+        if {ids[j] for j in heard} != set(graph.hears[i]):
+            raise RejectedCertificate(f"node {i} of the graph hears others than in the graph that the steps make")
     return tree_nodes

@@ -40,11 +40,13 @@ def command(
     Exit code 0: it proves its claim, and the claim is the one asked for. 10: it does not. 3: a file is malformed.
     """
     from certificates import verify
+    from certificates.__main__ import read_at_most
+    from certificates.verification import MAX_CERTIFICATE_BYTES
     from robustness.errors import UnreadableTopology
 
     graph = load_graph(source)
     try:
-        data = certificate.read_bytes()
+        data = read_at_most(certificate, MAX_CERTIFICATE_BYTES)
     except OSError as problem:
         raise UnreadableTopology(f"{certificate}: cannot be read: {problem.strerror}") from None
     claim = verify(graph.canonical_bytes(), data)

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from certificates import verify
+from certificates import MalformedCertificate, verify
 from certificates.verification import FORMAT
 from robustness.algorithms import Limits, Pair, Progress
 from robustness.checking import check_rs_robustness, limits_of
@@ -22,12 +22,12 @@ from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InternalError, InvalidParameter
 from robustness.results import RobustnessResult, Verdict, Witness
 
-__all__ = ["certify"]
+__all__ = ["Evidence", "certify", "direct_evidence", "encode"]
 
 _HEURISTIC_SECONDS = 0.25
 
 #: A header and a body: what stands in the certificate's first line as evidence, and what follows it.
-_Evidence = tuple[dict[str, Any], bytes]
+Evidence = tuple[dict[str, Any], bytes]
 
 
 def certify(
@@ -66,7 +66,7 @@ def certify(
         For r = 0, and where a convention decides and no pair exists: on fewer than two nodes.
 
     >>> import networkx as nx
-    >>> from certificates import verify
+    >>> from certificates import MalformedCertificate, verify
     >>> wheel = Digraph.from_networkx(nx.wheel_graph(5))
     >>> print(verify(wheel.canonical_bytes(), certify(wheel, 2).certificate).verdict)
     robust
@@ -81,7 +81,7 @@ def certify(
     limits = limits_of(started, time_limit, jobs, seed, progress)
     if graph.n < 2 or r > largest_conceivable_r(graph.n):
         result = check_rs_robustness(graph, r, s)
-        found: _Evidence | None = ({"kind": "degree"}, b"")
+        found: Evidence | None = ({"kind": "degree"}, b"")
         if result.witness is not None:
             found = _violation(Pair(graph.ids(result.witness.S1), graph.ids(result.witness.S2)))
     else:
@@ -89,22 +89,25 @@ def certify(
     if found is None:
         return replace(result, seconds=time.monotonic() - started)
     certificate = encode(graph, r, s, result.verdict, found)
-    claim = verify(graph.canonical_bytes(), certificate)
+    try:
+        claim = verify(graph.canonical_bytes(), certificate)
+    except MalformedCertificate as problem:
+        stats = dict(result.stats) | {"reason": f"the proof is beyond what the kernel checks: {problem}"}
+        undecided = RobustnessResult(Verdict.UNDECIDED, r, s, algorithm=result.algorithm, stats=stats)
+        return replace(undecided, seconds=time.monotonic() - started)
     if (claim.verdict, claim.r, claim.s) != (result.verdict.value, r, s):
         raise InternalError(f"the certificate proves {claim}, not the verdict {result.summary()}: please report")
     return replace(result, certificate=certificate, seconds=time.monotonic() - started)
 
 
-def encode(graph: Digraph, r: int, s: int, verdict: Verdict, evidence: _Evidence) -> bytes:
+def encode(graph: Digraph, r: int, s: int, verdict: Verdict, evidence: Evidence) -> bytes:
     """Return the certificate's bytes: one line of JSON, then the body."""
     claim = {"property": "rs-robust", "r": r, "s": s, "verdict": verdict.value}
     header = {"format": FORMAT, "graph": graph.sha256, "claim": claim, "evidence": evidence[0]}
     return json.dumps(header, separators=(",", ":")).encode("ascii") + b"\n" + evidence[1]
 
 
-def _search(
-    graph: Digraph, r: int, s: int, limits: Limits, shortest: bool
-) -> tuple[RobustnessResult, _Evidence | None]:
+def _search(graph: Digraph, r: int, s: int, limits: Limits, shortest: bool) -> tuple[RobustnessResult, Evidence | None]:
     """Decide by bounds or by the recorded search, and return the result with its evidence."""
     from robustness.bounds import Growth, settle
 
@@ -130,18 +133,18 @@ def _search(
 
 def _result(
     graph: Digraph, r: int, s: int, name: str, verdict: Verdict, stats: Mapping[str, Any], pair: Pair | None = None
-) -> tuple[RobustnessResult, _Evidence | None]:
+) -> tuple[RobustnessResult, Evidence | None]:
     witness = None if pair is None else Witness(graph.labels_of(pair.first), graph.labels_of(pair.second))
     return RobustnessResult(verdict, r, s, witness, algorithm=name, stats=stats), pair and _violation(pair)
 
 
-def _violation(pair: Pair) -> _Evidence:
+def _violation(pair: Pair) -> Evidence:
     return {"kind": "violation", "S1": sorted(pair.first), "S2": sorted(pair.second)}, b""
 
 
 def _growth(
     graph: Digraph, r: int, s: int, seed: Sequence[int], order: Sequence[int], limits: Limits
-) -> _Evidence | None:
+) -> Evidence | None:
     """Return growth evidence with its seed proven by the degree rule or by a refutation; None when neither works."""
     members = sorted(seed)
     if len(members) < s:
@@ -149,12 +152,17 @@ def _growth(
     place = {i: k for k, i in enumerate(members)}
     arcs = [(place[j], place[i]) for i in members for j in graph.in_neighbours(i).tolist() if j in place]
     induced = Digraph(range(len(members)), arcs)
-    head: dict[str, Any] = {"kind": "growth", "seed": members, "order": list(order)}
-    if int(induced.in_degrees.min()) >= induced.n // 2 + r - 1:
-        return head | {"proof": {"kind": "degree"}}, b""
-    if r > largest_conceivable_r(induced.n):
+    proof = direct_evidence(induced, r, s, limits)
+    if proof is None:
         return None
-    answer = run(induced, r, s, "subset-search", limits, {"transcript": True})
-    if answer.transcript is None:
+    return {"kind": "growth", "seed": members, "order": list(order), "proof": proof[0]}, proof[1]
+
+
+def direct_evidence(graph: Digraph, r: int, s: int, limits: Limits) -> Evidence | None:
+    """Return evidence of the kind "degree" or "refutation", which may prove a seed; None when neither was found."""
+    if int(graph.in_degrees.min()) >= graph.n // 2 + r - 1:
+        return {"kind": "degree"}, b""
+    if r > largest_conceivable_r(graph.n):
         return None
-    return head | {"proof": {"kind": "refutation"}}, answer.transcript
+    answer = run(graph, r, s, "subset-search", limits, {"transcript": True})
+    return None if answer.transcript is None else ({"kind": "refutation"}, answer.transcript)

@@ -5,6 +5,7 @@
 2
 """
 
+from robustness.constructions.certified import certify_derivation
 from robustness.constructions.counterexamples import FIVE_NODE_READINGS, five_node_figure, two_f_robust_counterexample
 from robustness.constructions.families import (
     circulant,
@@ -56,6 +57,7 @@ __all__ = [
     "add_node",
     "blow_up",
     "build",
+    "certify_derivation",
     "circulant",
     "cocktail_party",
     "complete",

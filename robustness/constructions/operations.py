@@ -34,6 +34,7 @@ __all__ = [
     "add_arcs",
     "add_node",
     "blow_up",
+    "carry_out",
     "grow",
     "guaranteed",
     "join_clique",
@@ -323,7 +324,17 @@ def _replay(guarantee: Guarantee, seeds: Mapping[str, Digraph], time_limit: floa
         if guarantee.sha256 not in seeds:
             raise InvalidParameter(f"the seed graph {guarantee.sha256[:12]} is missing: give it in seeds")
         return guaranteed(seeds[guarantee.sha256], guarantee.r, guarantee.s, time_limit=time_limit)
-    premises = [_replay(premise, seeds, time_limit) for premise in guarantee.premises]
+    return carry_out(guarantee, [_replay(premise, seeds, time_limit) for premise in guarantee.premises])
+
+
+def carry_out(guarantee: Guarantee, premises: Iterable[Guaranteed]) -> Guaranteed:
+    """Carry out the last step of a derivation, given what its premises speak about.
+
+    Raises
+    ------
+    InvalidParameter
+        When it does not give what the derivation says.
+    """
     parameters = {k: _as_label(v) if k == "node" else _from_json(v) for k, v in guarantee.parameters.items()}
     try:
         again = OPERATIONS[guarantee.rule](*premises, **parameters)

@@ -32,14 +32,14 @@ def export(graph_bytes: bytes, certificate_bytes: bytes, *, version: str = "3.0"
     graph_bytes : bytes
         The canonical graph, or a node-link JSON document of it.
     certificate_bytes : bytes
-        A certificate that this graph is robust, with evidence of any kind; it is verified first.
+        A certificate that this graph is robust, with evidence of any kind but a derivation; it is verified first.
     version : "3.0" or "1.1"
         The syntax of the proof: that of VeriPB 3, or that of the checkers before 2.0.
 
     Raises
     ------
     InvalidParameter
-        When ``version`` is another, or the certificate is that the graph is not robust.
+        When ``version`` is another, or the certificate is that the graph is not robust, or a derivation.
     CertificateError
         When the certificate does not prove its claim about this graph.
 
@@ -64,6 +64,8 @@ def export(graph_bytes: bytes, certificate_bytes: bytes, *, version: str = "3.0"
         raise InvalidParameter("a VeriPB proof shows that a graph is robust, but this certificate shows that it is not")
     header, _, body = certificate_bytes.partition(b"\n")
     evidence = json.loads(header)["evidence"]
+    if evidence["kind"] == "derivation":
+        raise InvalidParameter("a derivation has no VeriPB proof: certify the graph with evidence='refutation'")
     model = part = Model.of(decode_graph(graph_bytes), claim.r, claim.s)
     proof = Proof(model, SYNTAXES[version])
     if evidence["kind"] == "growth":

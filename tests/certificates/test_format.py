@@ -16,6 +16,7 @@ from certificates import (
     RejectedCertificate,
     graph,
     refutation,
+    rules,
     verification,
     verify,
 )
@@ -192,9 +193,20 @@ class TestHeader:
         monkeypatch.setattr(refutation, "MAX_NODES", 4)
         with pytest.raises(MalformedCertificate, match="at most 4 nodes"):
             verify(CANONICAL, PROOF)
+        monkeypatch.setattr(refutation, "MAX_NODES", 5)
+        monkeypatch.setattr(rules, "MAX_LOOKS", 10)
+        with pytest.raises(MalformedCertificate, match="at most 10 looks"):
+            verify(CANONICAL, PROOF)
         monkeypatch.setattr(graph, "MAX_GRAPH_BYTES", len(CANONICAL) - 1)
         with pytest.raises(MalformedGraph, match="at most"):
             verify(CANONICAL, PROOF)
+
+    def test_messages_stay_short(self) -> None:
+        """A label of lone surrogates, however long, is shown in part."""
+        document = b'{"arcs":[],"format":"robustness/graph/1","labels":["' + b"\\ud800" * 10_000 + b'"]}'
+        with pytest.raises(MalformedGraph, match="lone surrogates") as caught:
+            verify(document, certificate(WHEEL, 1, 1))
+        assert len(str(caught.value)) < 500
 
 
 class TestBody:

@@ -142,7 +142,7 @@ class TestRejected:
         turned = [*parts[1:], parts[0]]
         for data, message in (
             ((lengths[1:] + lengths[:1], b"".join(turned)), "another graph"),
-            ((lengths[:-1], b"".join(parts[:-1])), "there are 7 sets of 1 nodes, but 6"),
+            ((lengths[:-1], b"".join(parts[:-1])), "6 certificates are not one for every set of 1 of 7 nodes"),
         ):
             bad = make(graph, claim(verdict="together"), {"kind": "removals", "lengths": data[0]}, data[1])
             with pytest.raises(RejectedCertificate, match=message):
@@ -153,6 +153,13 @@ class TestRejected:
         )
         with pytest.raises(RejectedCertificate, match="another claim than 2-robustness"):
             verify_tolerance(star.canonical_bytes(), bad)
+
+    def test_more_removals_than_could_be_counted(self) -> None:
+        """8000 of 16000 nodes: a number of 4800 digits, which is neither computed nor printed."""
+        graph = rb.Digraph(range(16_000), [])
+        data = make(graph, claim(8_000, verdict="together"), {"kind": "removals", "lengths": [1]}, b"x")
+        with pytest.raises(RejectedCertificate, match="1 certificates are not one for every set of 8000 of 16000"):
+            verify_tolerance(graph.canonical_bytes(), data)
 
     def test_removals_on_too_few_nodes(self) -> None:
         data = make(WHEEL, claim(4, verdict="together"), {"kind": "removals", "lengths": []})

@@ -17,6 +17,7 @@ import robustness as rb
 from certificates import RejectedCertificate
 from certificates.graph import decode_graph
 from robustness.certification import certify, encode
+from robustness.constructions import blow_up, certify_derivation, guaranteed
 from robustness.errors import InvalidParameter
 from robustness.veripb import export
 from robustness.veripb.model import Model
@@ -332,6 +333,10 @@ def test_proof_is_bound_to_what_the_kernel_verified() -> None:
         export(wheel.canonical_bytes(), certificate(wheel, 2, 1)[:-1])
     with pytest.raises(InvalidParameter, match="shows that it is not"):
         export(wheel.canonical_bytes(), certificate(wheel, 3, 1))
+    made = blow_up(guaranteed(nx.cycle_graph(4)), 2)
+    derived = certify_derivation(made.guarantee, [nx.cycle_graph(4)]).certificate
+    with pytest.raises(InvalidParameter, match="a derivation has no VeriPB proof"):
+        export(rb.Digraph.from_networkx(made.graph).canonical_bytes(), derived)
     with pytest.raises(InvalidParameter, match=r"one of 3\.0, 1\.1, not '2\.0'"):
         export(wheel.canonical_bytes(), certificate(wheel, 2, 1), version="2.0")
 
