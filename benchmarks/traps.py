@@ -1,4 +1,4 @@
-"""The trap search on graphs with 50 nodes: ``python benchmarks/traps.py [--quick] [--cap SECONDS] [--seed N]``.
+"""The trap search on graphs with 50 nodes: ``python benchmarks/traps.py [--quick] [--seed N] [--markdown FILE]``.
 
 For each graph and f: is there a trap with at most f malicious nodes? ``search`` is ours, ``auto`` as users call it
 (lemmas first), ``cp-sat`` the 0-1 programme, ``removals`` the literal condition: one exact (f+1)-robustness check for
@@ -14,6 +14,7 @@ import random
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from pathlib import Path
 
 import networkx as nx
 
@@ -21,6 +22,8 @@ import robustness as rb
 from robustness.trap_search import find_trap
 
 NODES = 50
+#: The head of the table in docs/tolerance.md.
+HEAD = "| graph | f | trap | search tree | auto | search | CP-SAT | removals |"
 SAMPLE = 30
 
 
@@ -69,13 +72,13 @@ def removals(graph: nx.Graph, f: int, seed: int) -> float:
     return (time.perf_counter() - started) / SAMPLE * math.comb(len(graph), f)
 
 
-def measure(name: str, make: Callable[[], nx.Graph], f: int, cap: float, seed: int) -> Row:
+def measure(name: str, make: Callable[[], nx.Graph], f: int, cap: float, peer_cap: float, seed: int) -> Row:
     """Return one row; the methods must agree."""
     graph = make()
     digraph = rb.Digraph.from_networkx(graph)
     auto, auto_seconds, _ = timed(digraph, f, "auto", cap)
     ours, seconds, nodes = timed(digraph, f, "search", cap)
-    peer, peer_seconds, _ = timed(digraph, f, "cp-sat", cap)
+    peer, peer_seconds, _ = timed(digraph, f, "cp-sat", peer_cap)
     answers = {each for each in (auto, ours, peer) if each is not None}
     if len(answers) > 1:
         raise SystemExit(f"{name}, f = {f}: the methods disagree: {auto}, {ours}, {peer}")
@@ -87,29 +90,53 @@ def shown(seconds: float | None, cap: float) -> str:
     return f"> {cap:g}" if seconds is None else f"{seconds:.3f}"
 
 
+def told(row: Row, cap: float, peer_cap: float) -> list[str]:
+    """Return the cells of a row as text."""
+    answer = {True: "yes", False: "none", None: "?"}[row.exists]
+    times = (shown(row.auto, cap), shown(row.search, cap), shown(row.cp_sat, peer_cap), f"{row.removals:.1f}")
+    return [row.graph, str(row.f), answer, f"{row.nodes:,}", *times]
+
+
+def put(page: Path, rows: list[Row], cap: float, peer_cap: float) -> None:
+    """Replace the rows of the table that follows ``HEAD`` in a page."""
+    before, head, after = page.read_text(encoding="utf-8").partition(HEAD)
+    if not head:
+        raise SystemExit(f"{page} has no table that begins with {HEAD!r}")
+    rest = after.lstrip("\n").splitlines()
+    while rest and rest[0].startswith("|"):
+        rest.pop(0)
+    table = ["| " + " | ".join(told(row, cap, peer_cap)) + " |" for row in rows]
+    lines = [before + head, "|---|---|---|---|---|---|---|---|", *table, *rest]
+    page.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
 def main() -> None:
     """Print the table, and write it as JSON where asked."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="a cap of 5 seconds")
-    parser.add_argument("--cap", type=float, default=60.0, metavar="SECONDS")
+    parser.add_argument("--cap", type=float, default=120.0, metavar="SECONDS", help="of our search")
+    parser.add_argument("--peer-cap", type=float, default=20.0, metavar="SECONDS", help="of CP-SAT")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--json", metavar="FILE", help="write the table as JSON too")
+    parser.add_argument("--markdown", metavar="FILE", help="put the table into this page, in place of the one it has")
     options = parser.parse_args()
-    cap = 5.0 if options.quick else options.cap
+    cap, peer_cap = (5.0, 5.0) if options.quick else (options.cap, options.peer_cap)
     find_trap(nx.petersen_graph(), 1, algorithm="search")
     rb.check_rs_robustness(nx.petersen_graph(), 2, algorithm="subset-search")
-    print(f"traps in graphs on {NODES} nodes; seconds, cap {cap:g} s, one core, seed {options.seed}")
-    print(f"{'graph':<18} {'f':>2} {'trap':<6} {'nodes':>8} {'auto':>9} {'search':>9} {'cp-sat':>9} {'removals':>9}")
+    print(f"traps in graphs on {NODES} nodes; seconds, caps {cap:g} and {peer_cap:g} s, one core, seed {options.seed}")
+    print(f"{'graph':<18} {'f':>2} {'trap':<6} {'nodes':>9} {'auto':>9} {'search':>9} {'cp-sat':>9} {'removals':>9}")
     rows = []
     for name, make in graphs(options.seed).items():
         for f in (1, 2, 3):
-            row = measure(name, make, f, cap, options.seed)
+            row = measure(name, make, f, cap, peer_cap, options.seed)
             rows.append(row)
-            times = " ".join(f"{shown(each, cap):>9}" for each in (row.auto, row.search, row.cp_sat))
-            answer = {True: "yes", False: "none", None: "?"}[row.exists]
-            print(f"{name:<18} {f:>2} {answer:<6} {row.nodes:>8,} {times} {row.removals:>9.1f}", flush=True)
+            cells = told(row, cap, peer_cap)
+            times = " ".join(f"{each:>9}" for each in cells[4:])
+            print(f"{name:<18} {f:>2} {cells[2]:<6} {cells[3]:>9} {times}", flush=True)
     decided = sum(row.auto is not None for row in rows)
     print(f"decided by auto: {decided} of {len(rows)}")
+    if options.markdown:
+        put(Path(options.markdown), rows, cap, peer_cap)
     if options.json:
         with open(options.json, "w", encoding="utf-8") as stream:
             json.dump({"schema": "robustness/bench-traps/1", "rows": [asdict(row) for row in rows]}, stream, indent=1)

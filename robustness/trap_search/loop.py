@@ -231,16 +231,39 @@ def _look_ahead(  # type: ignore[no-untyped-def]  # noqa: C901 - compiled: calls
 
 
 @jit
-def _highest_need(state, need, both):  # type: ignore[no-untyped-def]
-    """Return the node with the greatest need among those that may be normal on side 1 (on both sides), or -1."""
+def _highest_need(state, need):  # type: ignore[no-untyped-def]
+    """Return the node with the greatest need among those that may be normal on both sides, or -1."""
     chosen = np.int64(-1)
     for w in range(state.shape[1]):
-        rest = state[P, w] & state[P + 1, w] if both else state[P, w]
+        rest = state[P, w] & state[P + 1, w]
         while rest:
             v = (w << 6) + first(rest)
             rest &= rest - ONE
             if chosen < 0 or need[v] > need[chosen]:
                 chosen = v
+    return chosen
+
+
+@jit
+def _next_root(state, hears, need):  # type: ignore[no-untyped-def]
+    """Return the node that may be normal on side 1 and has fewest in-neighbours inside to spare; ties: most needed.
+
+    Refuted roots are inside no more, so the next root is among those that hear them: soon some can be held by nobody
+    and are peeled. -1 when no node is left.
+    """
+    out_of_line()
+    words = state.shape[1]
+    chosen, least = np.int64(-1), np.int64(0)
+    for w in range(words):
+        rest = state[P, w]
+        while rest:
+            v = (w << 6) + first(rest)
+            rest &= rest - ONE
+            spare = -need[v]
+            for x in range(words):
+                spare += count(hears[v, x] & sure(state, 0, x))
+            if chosen < 0 or spare < least or (spare == least and need[v] > need[chosen]):
+                chosen, least = v, spare
     return chosen
 
 
@@ -271,7 +294,7 @@ def search(  # type: ignore[no-untyped-def]  # noqa: C901 - compiled: calls cost
             continue
         kind, side, node = NORMAL, np.int64(0), np.int64(-1)
         if symmetric[level]:
-            node = _highest_need(state, need, 0)
+            node = _next_root(state, hears, need)
         else:
             if _harvest(state, hears, need, two_faces, found):
                 return FOUND, level
@@ -287,7 +310,7 @@ def search(  # type: ignore[no-untyped-def]  # noqa: C901 - compiled: calls cost
                     level -= 1
                     continue
             elif not look_ahead:
-                node = _highest_need(state, need, 1)
+                node = _highest_need(state, need)
             if node < 0:
                 if _harvest(state, hears, need, two_faces, found):
                     return FOUND, level

@@ -12,10 +12,12 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from benchmarks import traps
 from certificates.__main__ import main as kernel
 from cli.exit_codes import ExitCode
 from cli.main import robustness
 from robustness.threat_models import THREAT_MODELS
+from robustness.trap_search import find_trap
 
 DOCS = Path(__file__).parents[2] / "docs"
 TUTORIAL = (DOCS / "tutorial-platoon.md").read_text(encoding="utf-8")
@@ -73,6 +75,18 @@ def test_the_python_of_the_page_prints_what_its_comments_say() -> None:
         exec(compile("\n".join(lines), "tolerance.md", "exec"), {})  # noqa: S102 - our own page
     promised = [line.partition("  # ")[2] for line in lines if line.startswith("print")]
     assert promised == printed.getvalue().splitlines()
+
+
+def test_the_table_of_traps_is_the_benchmark_s_and_true() -> None:
+    lines = TOLERANCE.partition(traps.HEAD)[2].splitlines()[2:]
+    rows = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in lines]
+    made = traps.graphs(1)
+    assert [(row[0], int(row[1])) for row in rows] == [(name, f) for name in made for f in (1, 2, 3)]
+    quick = [row for row in rows if float(row[5]) < 0.02]
+    assert len(quick) > 30
+    for name, f, answer, *_ in quick:
+        found = find_trap(made[name](), int(f), algorithm="search").decided()
+        assert answer == ("yes" if found else "none"), (name, f)
 
 
 def test_every_threat_model_is_on_the_page() -> None:
