@@ -116,6 +116,8 @@ def command(
         console.result(f"{result.summary()}: {source}, {graph.n} nodes, {graph.arc_count} arcs")
         if result.certificate is None:
             console.result(f"nothing is certified: {result.stats.get('reason', 'a limit was reached')}")
+        elif proof_format == "veripb" and result.verdict is Verdict.NOT_ROBUST:
+            console.talk("no VeriPB proof: that a graph is not robust is shown by the pair of sets in the certificate")
         for kind, path in written.items():
             size = f" ({len(result.certificate or b''):,} bytes, verified)" if kind == "certificate" else ""
             console.result(f"{kind:<12}{path}{size}")

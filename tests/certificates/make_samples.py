@@ -9,6 +9,7 @@ import random
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import networkx as nx
 
@@ -25,6 +26,26 @@ TRIANGLES = Digraph.from_networkx(nx.disjoint_union(nx.cycle_graph(3), nx.cycle_
 NAMES = Digraph([1, "1", "\u00e9", (2, "x")], [(1, "1"), ("1", "\u00e9"), ("\u00e9", 1), ("1", (2, "x"))])
 ONE = Digraph(["alone"], [])
 GROWTH = {"kind": "growth", "seed": [0, 1, 2], "order": [3, 4], "proof": {"kind": "degree"}}
+#: The wheel is a cycle of four joined with a node, and also a triangle with two new nodes and some arcs.
+DERIVED: dict[str, Any] = {
+    "kind": "derivation",
+    "seed": {"nodes": 4, "arcs": [[0, 1], [1, 0], [1, 2], [2, 1], [2, 3], [3, 2], [3, 0], [0, 3]], "r": 1, "s": 4},
+    "proof": {"kind": "refutation"},
+    "steps": [{"rule": "join-clique", "size": 1}],
+    "ids": [1, 2, 3, 4, 0],
+}
+GROWN: dict[str, Any] = {
+    "kind": "derivation",
+    "seed": {"nodes": 3, "arcs": [[u, v] for u in range(3) for v in range(3) if u != v], "r": 2, "s": 3},
+    "proof": {"kind": "degree"},
+    "steps": [
+        {"rule": "weaken", "r": 2, "s": 1},
+        {"rule": "add-node", "hears": [0, 2]},
+        {"rule": "add-node", "hears": [0, 1, 3]},
+        {"rule": "add-arcs", "arcs": [[3, 0], [3, 2], [4, 0], [4, 1], [4, 3]]},
+    ],
+    "ids": [0, 1, 2, 3, 4],
+}
 TWO_RIMS = {"kind": "violation", "S1": [1, 2], "S2": [3, 4]}
 
 
@@ -35,6 +56,12 @@ def proof(graph: Digraph, r: int, s: int) -> bytes:
 
 def body(graph: Digraph, r: int, s: int) -> bytes:
     return wander(graph, r, s, random.Random(1))
+
+
+def derived(evidence: dict[str, Any]) -> bytes:
+    """Return a derivation of the wheel from the cycle of four."""
+    cycle = Digraph.from_networkx(nx.cycle_graph(4))
+    return certificate(WHEEL, 2, 1, evidence=evidence, body=body(cycle, 1, 4))
 
 
 def cut(graph: Digraph, r: int, s: int) -> bytes:
@@ -60,6 +87,8 @@ def samples() -> Iterator[tuple[str, str, bytes, bytes]]:
         ("degree-complete-3-6", K6, certificate(K6, 3, 6, evidence={"kind": "degree"})),
         ("degree-one-node", ONE, certificate(ONE, 1, 1, evidence={"kind": "degree"})),
         ("growth-wheel-2-1", WHEEL, certificate(WHEEL, 2, 1, evidence=GROWTH)),
+        ("derivation-wheel-is-a-joined-cycle", WHEEL, derived(DERIVED)),
+        ("derivation-wheel-grown-from-a-triangle", WHEEL, certificate(WHEEL, 2, 1, evidence=GROWN)),
         ("violation-wheel-3-1", WHEEL, certificate(WHEEL, 3, 1, "not-robust", TWO_RIMS)),
         (
             "violation-with-exempt-nodes",
@@ -82,6 +111,13 @@ def samples() -> Iterator[tuple[str, str, bytes, bytes]]:
         ("degree-too-small", HEXAGON, certificate(HEXAGON, 1, 1, evidence={"kind": "degree"})),
         ("growth-too-thin", WHEEL, certificate(WHEEL, 2, 2, evidence=GROWTH)),
         ("growth-without-a-node", WHEEL, certificate(WHEEL, 2, 1, evidence=GROWTH | {"order": [3]})),
+        ("derivation-of-a-larger-s", WHEEL, certificate(WHEEL, 2, 2, evidence=GROWN)),
+        (
+            "derivation-that-skips-weaken",
+            WHEEL,
+            certificate(WHEEL, 2, 1, evidence=GROWN | {"steps": GROWN["steps"][1:]}),
+        ),
+        ("derivation-of-another-numbering", WHEEL, derived(DERIVED | {"ids": [0, 1, 2, 3, 4]})),
         ("a-pair-that-violates-nothing", WHEEL, certificate(WHEEL, 2, 1, "not-robust", TWO_RIMS)),
         ("a-pair-that-overlaps", WHEEL, certificate(WHEEL, 3, 1, "not-robust", TWO_RIMS | {"S2": [2, 4]})),
         ("an-empty-set", WHEEL, certificate(WHEEL, 3, 1, "not-robust", TWO_RIMS | {"S1": []})),
@@ -110,6 +146,7 @@ def samples() -> Iterator[tuple[str, str, bytes, bytes]]:
         ("nested-too-deeply", good.replace(b'{"kind": "refutation"}', b"[" * 5000 + b"]" * 5000)),
         ("ids-out-of-range", certificate(WHEEL, 3, 1, "not-robust", TWO_RIMS | {"S2": [3, 5]})),
         ("ids-out-of-order", certificate(WHEEL, 3, 1, "not-robust", TWO_RIMS | {"S2": [4, 3]})),
+        ("derivation-step-of-no-rule", certificate(WHEEL, 2, 1, evidence=GROWN | {"steps": [{"rule": "believe"}]})),
         ("a-body-for-degree", certificate(K6, 3, 1, evidence={"kind": "degree"}, body=b"\0")),
     ):
         yield "malformed", name, K6.canonical_bytes() if name == "a-body-for-degree" else wheel, data

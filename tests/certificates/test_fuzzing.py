@@ -34,11 +34,33 @@ json_values = st.recursive(
     scalars, lambda inner: st.lists(inner, max_size=4) | st.dictionaries(text, inner, max_size=3), max_leaves=12
 )
 ids = st.lists(st.integers(-1, 6), max_size=6) | st.lists(st.integers(0, 5), max_size=6, unique=True).map(sorted)
-kinds = st.sampled_from(["violation", "degree", "growth", "refutation"])
+kinds = st.sampled_from(["violation", "degree", "growth", "refutation", "derivation"])
+pairs = st.lists(st.lists(st.integers(-1, 5), min_size=2, max_size=2) | ids, max_size=8)
+small = st.integers(-1, 4) | st.integers()
+steps = st.lists(
+    st.fixed_dictionaries({"rule": st.just("weaken"), "r": small, "s": small})
+    | st.fixed_dictionaries({"rule": st.sampled_from(["add-arcs", "remove-arcs"]), "arcs": pairs})
+    | st.fixed_dictionaries({"rule": st.just("remove-nodes"), "nodes": ids})
+    | st.fixed_dictionaries({"rule": st.just("add-node"), "hears": ids})
+    | st.fixed_dictionaries({"rule": st.just("join-clique"), "size": small})
+    | st.fixed_dictionaries({"rule": st.just("blow-up"), "copies": small, "cliques": st.booleans() | small})
+    | st.fixed_dictionaries({"rule": text, "arcs": pairs}),
+    max_size=5,
+)
+seeds = st.fixed_dictionaries({"nodes": small, "arcs": pairs, "r": small, "s": small})
 evidence = (
     kinds.map(lambda kind: {"kind": kind})
     | st.fixed_dictionaries({"kind": kinds, "S1": ids, "S2": ids})
     | st.fixed_dictionaries({"kind": kinds, "seed": ids, "order": ids, "proof": kinds.map(lambda kind: {"kind": kind})})
+    | st.fixed_dictionaries(
+        {
+            "kind": st.just("derivation"),
+            "seed": seeds,
+            "proof": kinds.map(lambda kind: {"kind": kind}),
+            "steps": steps,
+            "ids": ids,
+        }
+    )
     | json_values
 )
 numbers = st.integers(0, 7) | json_values
