@@ -161,7 +161,6 @@ def _settle(width, state, hears, need, spare, allowed):  # type: ignore[no-untyp
     out_of_line()
     words = len(width)
     allowed[:] = spare
-    trial = np.empty(words, np.uint64)
     while True:
         left = spare
         for w in range(words):
@@ -220,6 +219,7 @@ def _settle(width, state, hears, need, spare, allowed):  # type: ignore[no-untyp
         if changed:
             continue
         if left:
+            trial = np.empty(words, np.uint64)
             for side in range(2):
                 fair = left - _least_spare(width, state, hears, need, left, 1 - side, trial)
                 if fair < 0:
@@ -235,9 +235,12 @@ def _settle(width, state, hears, need, spare, allowed):  # type: ignore[no-untyp
 
 @jit
 def _exclude(  # type: ignore[no-untyped-def]
-    width, state, hears, need, left, allowed, side, blockers, reach, buffer, place
+    width, state, hears, need, left, allowed, side, blockers, reach, margin, buffer, place
 ):
-    """Apply *count* once to every candidate of the other side; return (exclusions or -1 on contradiction, place)."""
+    """Apply *count* once to every candidate of the other side; return (exclusions or -1 on contradiction, place).
+
+    ``margin[k, j]`` receives how far j is from being excluded from side k.
+    """
     out_of_line()
     words, other = len(width), 1 - side
     most = 0
@@ -255,12 +258,12 @@ def _exclude(  # type: ignore[no-untyped-def]
             most += 1
     found = 0
     for w in range(words):
-        rest = state[P + other, w] if most else ZERO
+        rest = state[P + other, w]
         while rest:
             j = (w << 6) + first(rest)
             rest &= rest - ONE
             bit = bit_of(j)
-            have, gain, one = left, np.int64(0), -1
+            have, gain, next_gain, one = left, np.int64(0), np.int64(0), -1
             for x in range(words):
                 have += count(hears[j, x] & (state[P + other, x] | state[F + other, x]))
             for a in range(most):
@@ -270,13 +273,17 @@ def _exclude(  # type: ignore[no-untyped-def]
                 for x in range(words):
                     value += count(hears[j, x] & (state[P + other, x] | state[F + other, x]) & reach[a, x])
                 if value > gain:
-                    gain, one = value, a
+                    next_gain, gain, one = gain, value, a
+                elif value > next_gain:
+                    next_gain = value
+            have -= gain
+            margin[other, j] = have - need[j]
             if one < 0:
                 continue
-            have -= gain
             two = -1
             if have >= need[j]:
-                if blockers < 2:
+                # Beside another, no blocker gains more than it does alone, and it costs what exemptions allow.
+                if blockers < 2 or have - next_gain + allowed[side] >= need[j]:
                     continue
                 gain = np.int64(0)
                 for a in range(most):
@@ -294,6 +301,7 @@ def _exclude(  # type: ignore[no-untyped-def]
                         )
                     if value > gain:
                         gain, two = value, a
+                margin[other, j] = have - gain - need[j]
                 if two < 0 or have - gain >= need[j]:
                     continue
             if place >= 0:
@@ -310,10 +318,11 @@ def _exclude(  # type: ignore[no-untyped-def]
 
 
 @jit
-def propagate(width, state, hears, need, spare, blockers, reach, buffer, place):  # type: ignore[no-untyped-def]
+def propagate(width, state, hears, need, spare, blockers, reach, margin, buffer, place):  # type: ignore[no-untyped-def]
     """Apply all rules until nothing changes; return (exemptions left or -1 on contradiction, place in the transcript).
 
-    With ``place >= 0`` every exclusion is written to ``buffer``: EXCLUDE steps, PROPAGATE, EXCLUDE steps, and so on.
+    ``margin`` (2, n) receives how far every candidate of either side is from being excluded by *count*. With
+    ``place >= 0`` every exclusion is written to ``buffer``: EXCLUDE steps, PROPAGATE, EXCLUDE steps, and so on.
     """
     out_of_line()
     allowed = np.empty(2, np.int64)
@@ -323,7 +332,9 @@ def propagate(width, state, hears, need, spare, blockers, reach, buffer, place):
             return left, place
         excluded = 0
         for side in range(2):
-            found, place = _exclude(width, state, hears, need, left, allowed, side, blockers, reach, buffer, place)
+            found, place = _exclude(
+                width, state, hears, need, left, allowed, side, blockers, reach, margin, buffer, place
+            )
             if found < 0:
                 return np.int64(-1), place
             excluded += found

@@ -28,7 +28,7 @@ from robustness.algorithms.search_kernel import (
     propagate,
     varint,
 )
-from robustness.algorithms.words import ONE, count, first, jit
+from robustness.algorithms.words import ONE, bit_of, count, first, jit
 
 __all__ = ["CLOSED", "DONATED", "FLUSH", "FOUND", "GIVEN", "GROW", "PAUSED", "PENDING", "SYMMETRIC", "search"]
 
@@ -41,8 +41,8 @@ PENDING, SYMMETRIC, GIVEN = 0, 1, 2
 # Counters.
 NODES, FAILED, PROBES = 0, 1, 2
 
-#: Look-ahead tries about this many nodes at most.
-_TRIED = 64
+#: Look-ahead tries this many nodes on one side. Trying all on both costs more than it saves: see docs/adr/0002.
+_TRIED = 8
 
 
 @jit
@@ -100,90 +100,83 @@ def _weight(width, state):  # type: ignore[no-untyped-def]
 
 
 @jit
-def _threshold(width, state, hears, heard):  # type: ignore[no-untyped-def]
-    """Fill ``heard`` with how many satisfied nodes each free node hears; return the least that about _TRIED reach."""
+def _most_promising(width, state, hears, margin, side, value, chosen):  # type: ignore[no-untyped-def]
+    """Fill ``chosen`` with the nodes that look-ahead tries on ``side``, best first; return how many there are.
+
+    Of the nodes that may be satisfied on either side these are nearest to being excluded from this one and hear most
+    satisfied nodes. Ties go to the lower id.
+    """
     words = len(width)
-    tally = np.zeros(65, np.int64)
-    free = 0
+    found = 0
     for w in range(words):
         rest = state[P, w] & state[P + 1, w]
         while rest:
             v = (w << 6) + first(rest)
             rest &= rest - ONE
-            total = 0
+            worth = -4 * margin[side, v]
             for x in range(words):
-                total += count(hears[v, x] & (state[T, x] | state[T + 1, x]))
-            heard[v] = min(total, 64)
-            tally[heard[v]] += 1
-            free += 1
-    if free <= _TRIED:
-        return 0
-    least, enough = 64, tally[64]
-    while least > 0 and enough + tally[least - 1] <= _TRIED:
-        least -= 1
-        enough += tally[least]
-    return least if enough > 0 else least - 1
+                worth += count(hears[v, x] & (state[T, x] | state[T + 1, x]))
+            place = found
+            if found < len(chosen):
+                found += 1
+            elif worth <= value[found - 1]:
+                continue
+            else:
+                place -= 1
+            while place > 0 and value[place - 1] < worth:
+                value[place] = value[place - 1]
+                chosen[place] = chosen[place - 1]
+                place -= 1
+            value[place] = worth
+            chosen[place] = v
+    return found
 
 
 @jit
 def _look_ahead(  # type: ignore[no-untyped-def]
-    width, state, hears, need, spare, blockers, reach, scratch, shrink, heard, counters, buffer, place
+    width, state, hears, need, spare, blockers, reach, margin, scratch, scratch_margin, counters, buffer, place
 ):
-    """Try nodes that may still be satisfied on either side; return (side, node, place) to branch on.
+    """Try a few nodes as satisfied ones of the side with fewer candidates; return (side, node, place) to branch on.
 
-    At most ``_TRIED`` nodes are tried, those that hear most satisfied nodes, so that a tree node has bounded cost. A
-    node that cannot be satisfied on a side is a failed literal: a branch whose true child closes at once. side is -1
-    when the state became contradictory and 2 when no node is left in both sets. The score of a node is the product of
-    what its two positive literals settle.
+    A node that cannot be satisfied there is a failed literal: a branch whose true child closes at once. Of the others
+    the one that settles most is branched on. side is -1 when the state became contradictory and 2 when no node is left
+    in both sets.
     """
-    words = len(width)
+    value = np.empty(_TRIED, np.int64)
+    chosen = np.empty(_TRIED, np.int64)
     while True:
-        weight, some, failed = _weight(width, state), False, False
-        least = _threshold(width, state, hears, heard)
-        for w in range(words):
-            rest = state[P, w] & state[P + 1, w]
-            while rest:
-                v = (w << 6) + first(rest)
-                rest &= rest - ONE
-                some = True
-                if heard[v] < least:
-                    shrink[0, v] = -1
-                    continue
-                for side in range(2):
-                    counters[PROBES] += 1
-                    copy_state(width, scratch, state)
-                    assume(scratch, SATISFIED, side, v, True)
-                    start = place
-                    if place >= 0:
-                        start = varint(buffer, varint(buffer, place, BRANCH + 2 * SATISFIED + side), v)
-                    left, end = propagate(width, scratch, hears, need, spare, blockers, reach, buffer, start)
-                    if left < 0:
-                        counters[FAILED] += 1
-                        failed = True
-                        assume(state, SATISFIED, side, v, False)
-                        left, place = propagate(width, state, hears, need, spare, blockers, reach, buffer, end)
-                        if left < 0:
-                            return np.int64(-1), np.int64(-1), place
-                        weight = _weight(width, state)
-                        shrink[0, v] = -1
-                        rest &= state[P, w] & state[P + 1, w]
-                        break
-                    shrink[side, v] = weight - _weight(width, scratch)
-        if not some:
+        surplus = np.int64(0)
+        for w in range(len(width)):
+            surplus += count(state[P, w]) - count(state[P + 1, w])
+        # On a tie the second side: a root has begun the first one.
+        side = np.int64(surplus >= 0)
+        found = _most_promising(width, state, hears, margin, side, value, chosen)
+        if found == 0:
             return np.int64(2), np.int64(-1), place
-        best, chosen = np.int64(-1), np.int64(-1)
-        for w in range(words):
-            rest = state[P, w] & state[P + 1, w]
-            while rest:
-                v = (w << 6) + first(rest)
-                rest &= rest - ONE
-                score = (2 * shrink[0, v] + 1) * (2 * shrink[1, v] + 1)
-                if shrink[0, v] >= 0 and score > best:
-                    best, chosen = score, v
-        if chosen >= 0:
-            return np.int64(0 if shrink[0, chosen] > shrink[1, chosen] else 1), chosen, place
-        if not failed:
-            return np.int64(2), np.int64(-1), place
+        most, node = np.int64(-1), np.int64(-1)
+        for a in range(found):
+            v = chosen[a]
+            if not state[P, v >> 6] & state[P + 1, v >> 6] & bit_of(v):
+                continue  # a failed literal has settled it
+            counters[PROBES] += 1
+            copy_state(width, scratch, state)
+            assume(scratch, SATISFIED, side, v, True)
+            start = place
+            if place >= 0:
+                start = varint(buffer, varint(buffer, place, BRANCH + 2 * SATISFIED + side), v)
+            left, end = propagate(width, scratch, hears, need, spare, blockers, reach, scratch_margin, buffer, start)
+            if left < 0:
+                counters[FAILED] += 1
+                assume(state, SATISFIED, side, v, False)
+                left, place = propagate(width, state, hears, need, spare, blockers, reach, margin, buffer, end)
+                if left < 0:
+                    return np.int64(-1), np.int64(-1), place
+                continue
+            settled = _weight(width, state) - _weight(width, scratch)
+            if settled > most:
+                most, node = settled, v
+        if node >= 0 and state[P, node >> 6] & state[P + 1, node >> 6] & bit_of(node):
+            return side, node, place
 
 
 @jit
@@ -214,8 +207,8 @@ def search(  # type: ignore[no-untyped-def]
     n, words = hears.shape[0], len(width)
     reach = np.empty((n, words + 2), np.uint64)
     scratch = np.empty((8, words), np.uint64)
-    shrink = np.zeros((2, n), np.int64)
-    heard = np.zeros(n, np.int64)
+    margin = np.zeros((2, n), np.int64)
+    scratch_margin = np.zeros((2, n), np.int64)
     room = buffer.shape[0] - 32 * n * n - 4096
     while level >= 0:
         if place >= 0 and place > room:
@@ -230,7 +223,7 @@ def search(  # type: ignore[no-untyped-def]
         counters[NODES] += 1
         state = stack[level]
         table[level, PENDING] = 0
-        left, place = propagate(width, state, hears, need, spare, blockers, reach, buffer, place)
+        left, place = propagate(width, state, hears, need, spare, blockers, reach, margin, buffer, place)
         if left < 0:
             level -= 1
             continue
@@ -242,7 +235,19 @@ def search(  # type: ignore[no-untyped-def]
                 return FOUND, level, place
             if look_ahead:
                 side, node, place = _look_ahead(
-                    width, state, hears, need, spare, blockers, reach, scratch, shrink, heard, counters, buffer, place
+                    width,
+                    state,
+                    hears,
+                    need,
+                    spare,
+                    blockers,
+                    reach,
+                    margin,
+                    scratch,
+                    scratch_margin,
+                    counters,
+                    buffer,
+                    place,
                 )
                 if side < 0:
                     level -= 1
