@@ -129,7 +129,7 @@ def determine_robustness(
     jobs: int = 1,
     seed: int = 0,
     progress: Callable[[Progress], None] | None = None,
-    s_time_limit: float | None = 0.25,
+    s_time_limit: float | None = 0.1,
     on_bounds: Callable[[Bounds], None] | None = None,
 ) -> RobustnessResult:
     """Return r*, the greatest r for which G is r-robust, and then the greatest s for which G is (r*,s)-robust.

@@ -28,6 +28,9 @@ _HEURISTIC_SECONDS = 0.5
 #: Seconds of exact search before bounds that cost more are tried.
 _SHORT_SECONDS = 0.5
 
+#: Seconds that the climb from below may take.
+_CLIMB_SECONDS = 2.0
+
 #: Up to this many nodes ``auto`` reads profiles off the subset-minimum transform: seconds.
 _TRANSFORM_PROFILE_NODES = 22
 
@@ -88,8 +91,7 @@ def determine(
         )
     name = work.name
     if s_time_limit is not None:
-        ends = time.monotonic() + s_time_limit
-        work.limits = replace(limits, deadline=ends if limits.deadline is None else min(ends, limits.deadline))
+        work.limits = _until(limits, s_time_limit)
     s_bounds = _greatest_s(work, r, known=1)
     return RobustnessResult(
         Verdict.DETERMINED,
@@ -106,8 +108,9 @@ def determine(
 def _greatest_r(work: _Work, on_bounds: Callable[[Bounds], None]) -> Bounds:
     """Return bounds on r*, equal unless a limit stopped the work.
 
-    Bounds that cost milliseconds come first, then a short exact search, then bounds that cost a second, then exact
-    search to the end: whichever way a graph is easy, it is decided that way.
+    Bounds that cost milliseconds come first, then a short exact search, then bounds that cost a second, then a climb
+    from below that is worth its little time, then exact search to the end: whichever way a graph is easy, it is decided
+    that way, and a limit leaves a narrow interval.
     """
     graph, limits = work.graph, work.limits
     found = Bounds(Bound(0, "every graph is 0-robust"), Bound(largest_conceivable_r(graph.n), "r* <= ceil(n/2)"))
@@ -117,25 +120,37 @@ def _greatest_r(work: _Work, on_bounds: Callable[[Bounds], None]) -> Bounds:
         return _descend(work, found, on_bounds)
     from robustness.bounds import bounds
 
+    def report(cheap: Bounds) -> None:
+        met = _meet(found, cheap)
+        if met != found:
+            on_bounds(met)
+
     for thorough, seconds in ((False, _SHORT_SECONDS), (True, None)):
         cheap = bounds(
             graph,
             seed=limits.seed,
             time_budget=min(_HEURISTIC_SECONDS, limits.seconds_left() / 2),
             stop=limits.expired,
-            on_bounds=on_bounds,
+            on_bounds=report,
             thorough=thorough,
         )
         work.name = work.name if work.stats else "bounds"  # a search has counters
         found = _meet(found, cheap)
-        if seconds is not None:
-            ends = time.monotonic() + seconds
-            work.limits = replace(limits, deadline=ends if limits.deadline is None else min(ends, limits.deadline))
+        if seconds is None:
+            work.limits = _until(limits, min(_CLIMB_SECONDS, limits.seconds_left() / 4))
+            found = _climb(work, found, on_bounds)
+        work.limits = limits if seconds is None else _until(limits, seconds)
         found = _descend(work, found, on_bounds)
         work.limits = limits
         if found.lower.value == found.upper.value:
             break
     return found
+
+
+def _until(limits: Limits, seconds: float) -> Limits:
+    """Return ``limits`` that end after so many seconds at the latest."""
+    ends = time.monotonic() + seconds
+    return replace(limits, deadline=ends if limits.deadline is None else min(ends, limits.deadline))
 
 
 def _read_off(work: _Work, found: Bounds) -> Bounds:
@@ -167,6 +182,26 @@ def _descend(work: _Work, found: Bounds, on_bounds: Callable[[Bounds], None]) ->
     """Decide r = upper, upper - 1, ... until one holds or a limit is reached."""
     while found.lower.value < found.upper.value:
         r = found.upper.value
+        answer = work.search(r, 1)
+        if answer.verdict is Verdict.UNDECIDED:
+            break
+        if answer.verdict is Verdict.ROBUST:
+            found = Bounds(Bound(r, f"{work.name} refuted every violating pair"), found.upper)
+        else:
+            witness = witness_of(work.graph, answer.pair)
+            found = Bounds(found.lower, Bound(r - 1, f"violating pair found by {work.name}", witness))
+        on_bounds(found)
+    return found
+
+
+def _climb(work: _Work, found: Bounds, on_bounds: Callable[[Bounds], None]) -> Bounds:
+    """Decide r = lower + 1, lower + 2, ... below the upper bound until a limit is reached.
+
+    The cost of a refutation grows some hundredfold with each r near r*, so those below cost next to nothing together,
+    while the one at the upper bound may never end.
+    """
+    while found.lower.value + 1 < found.upper.value:
+        r = found.lower.value + 1
         answer = work.search(r, 1)
         if answer.verdict is Verdict.UNDECIDED:
             break

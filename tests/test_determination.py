@@ -1,0 +1,44 @@
+"""Finding r*: the bounds on the way only improve, and the climb from below stops where it must."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import networkx as nx
+import pytest
+
+import robustness as rb
+from robustness import determination
+from robustness.algorithms import Limits
+from robustness.definitions import is_violation
+from robustness.determination import _climb, _Work
+from robustness.results import Bound, Bounds
+
+
+def test_bounds_only_improve(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With hardly any time for the first search, every phase has its turn; none starts again from nothing."""
+    monkeypatch.setattr(determination, "_SHORT_SECONDS", 1e-6)
+    graph = rb.Digraph.from_networkx(nx.random_regular_graph(8, 40, seed=1))
+    seen: list[Bounds] = []
+    result = rb.determine_robustness(graph, on_bounds=seen.append)
+    assert len(seen) > 3
+    for before, after in pairwise(seen):
+        assert before.lower.value <= after.lower.value <= after.upper.value <= before.upper.value
+    assert seen[-1].lower.value == seen[-1].upper.value == result.r
+
+
+@pytest.mark.parametrize("directed", [False, True])
+@pytest.mark.parametrize("seed", range(4))
+def test_the_climb_ends_below_the_upper_bound_or_at_a_pair(directed: bool, seed: int) -> None:
+    graph = rb.Digraph.from_networkx(nx.gnp_random_graph(21, 0.5, seed=seed, directed=directed))
+    exact = rb.determine_robustness(graph).r
+    for upper in (exact, exact + 1, exact + 3):
+        start = Bounds(Bound(0, "every graph is 0-robust"), Bound(upper, "assumed here"))
+        found = _climb(_Work(graph, "subset-search", Limits()), start, lambda _: None)
+        if upper > exact + 1:
+            assert found.lower.value == found.upper.value == exact
+            assert found.upper.witness is not None
+            first, second = (graph.ids(side) for side in (found.upper.witness.S1, found.upper.witness.S2))
+            assert is_violation(graph, first, second, exact + 1, 1)
+        else:
+            assert (found.lower.value, found.upper.value) == (max(upper - 1, 0), upper)
