@@ -28,9 +28,6 @@ _HEURISTIC_SECONDS = 0.5
 #: Seconds of exact search before bounds that cost more are tried.
 _SHORT_SECONDS = 0.5
 
-#: Seconds that the climb from below may take.
-_CLIMB_SECONDS = 2.0
-
 #: Up to this many nodes ``auto`` reads profiles off the subset-minimum transform: seconds.
 _TRANSFORM_PROFILE_NODES = 22
 
@@ -108,9 +105,9 @@ def determine(
 def _greatest_r(work: _Work, on_bounds: Callable[[Bounds], None]) -> Bounds:
     """Return bounds on r*, equal unless a limit stopped the work.
 
-    Bounds that cost milliseconds come first, then a short exact search, then bounds that cost a second, then a climb
-    from below that is worth its little time, then exact search to the end: whichever way a graph is easy, it is decided
-    that way, and a limit leaves a narrow interval.
+    Bounds that cost milliseconds come first, then a short exact search, then bounds that cost a second, then exact
+    searches from below and from above in turns, each longer than the one before, until one r is left to be refuted:
+    whichever way a graph is easy, it is decided that way, and a limit leaves a narrow interval.
     """
     graph, limits = work.graph, work.limits
     found = Bounds(Bound(0, "every graph is 0-robust"), Bound(largest_conceivable_r(graph.n), "r* <= ceil(n/2)"))
@@ -118,6 +115,7 @@ def _greatest_r(work: _Work, on_bounds: Callable[[Bounds], None]) -> Bounds:
         found = _read_off(work, found)
     if work.algorithm != "auto" or graph.n <= TRANSFORM_NODES:
         return _descend(work, found, on_bounds)
+    from robustness.algorithms.subset_search import MOST_NODES
     from robustness.bounds import bounds
 
     def report(cheap: Bounds) -> None:
@@ -125,7 +123,8 @@ def _greatest_r(work: _Work, on_bounds: Callable[[Bounds], None]) -> Bounds:
         if met != found:
             on_bounds(met)
 
-    for thorough, seconds in ((False, _SHORT_SECONDS), (True, None)):
+    seconds = _SHORT_SECONDS
+    for thorough in (False, True):
         cheap = bounds(
             graph,
             seed=limits.seed,
@@ -136,14 +135,19 @@ def _greatest_r(work: _Work, on_bounds: Callable[[Bounds], None]) -> Bounds:
         )
         work.name = work.name if work.stats else "bounds"  # a search has counters
         found = _meet(found, cheap)
-        if seconds is None:
-            work.limits = _until(limits, min(_CLIMB_SECONDS, limits.seconds_left() / 4))
-            found = _climb(work, found, on_bounds)
-        work.limits = limits if seconds is None else _until(limits, seconds)
+        if not thorough:
+            work.limits = _until(limits, seconds)
+            found = _descend(work, found, on_bounds)
+    is_last = False
+    while found.lower.value < found.upper.value and not is_last and not limits.expired():
+        # Which end gives way sooner is not known, so both have their turns, until one r is left.
+        seconds *= 4
+        work.limits = _until(limits, min(seconds, limits.seconds_left() / 4))
+        found = _climb(work, found, on_bounds)
+        is_last = found.lower.value + 1 >= found.upper.value or graph.n > MOST_NODES
+        work.limits = limits if is_last else _until(limits, seconds)
         found = _descend(work, found, on_bounds)
-        work.limits = limits
-        if found.lower.value == found.upper.value:
-            break
+    work.limits = limits
     return found
 
 

@@ -42,3 +42,13 @@ def test_the_climb_ends_below_the_upper_bound_or_at_a_pair(directed: bool, seed:
             assert is_violation(graph, first, second, exact + 1, 1)
         else:
             assert (found.lower.value, found.upper.value) == (max(upper - 1, 0), upper)
+
+
+def test_a_graph_too_large_for_the_search_is_left_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without a time limit, too, the work ends, and the bounds hold."""
+    monkeypatch.setattr("robustness.algorithms.subset_search.MOST_NODES", 30)
+    result = rb.determine_robustness(nx.random_regular_graph(10, 60, seed=1))
+    assert result.verdict is rb.Verdict.UNDECIDED
+    assert result.bounds is not None
+    assert result.bounds.lower.value < result.bounds.upper.value
+    assert "at most 30 nodes" in result.stats["reason"]

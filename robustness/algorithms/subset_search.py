@@ -44,7 +44,7 @@ from robustness.digraph import Digraph
 from robustness.errors import InternalError, InvalidParameter
 from robustness.results import Verdict
 
-__all__ = ["decide"]
+__all__ = ["MOST_NODES", "decide"]
 
 _Words = npt.NDArray[np.uint64]
 
@@ -52,7 +52,7 @@ _Words = npt.NDArray[np.uint64]
 _SLICE = 0.02
 
 #: Masks take n * n / 8 bytes; beyond this many nodes the search is not the right tool.
-_MOST_NODES = 20_000
+MOST_NODES = 20_000
 
 
 @dataclass(slots=True)
@@ -102,8 +102,8 @@ def decide(
     """
     if blockers not in (0, 1, 2):
         raise InvalidParameter(f"blockers is 0, 1 or 2, not {blockers!r}")
-    if graph.n > _MOST_NODES:
-        return Answer(Verdict.UNDECIDED, stats={"reason": f"subset-search takes at most {_MOST_NODES} nodes"})
+    if graph.n > MOST_NODES:
+        return Answer(Verdict.UNDECIDED, stats={"reason": f"subset-search takes at most {MOST_NODES} nodes"})
     return _Search(graph, r, s, limits, transcript, blockers, look_ahead).run()
 
 
