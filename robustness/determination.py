@@ -25,8 +25,14 @@ __all__ = ["determine", "profile"]
 #: Seconds that heuristics for bounds on r* may take before the exact search begins.
 _HEURISTIC_SECONDS = 0.5
 
-#: Seconds of exact search before bounds that cost more are tried.
-_SHORT_SECONDS = 0.5
+#: Seconds of exact search before bounds that cost more are tried, and once more before local search goes on.
+_SHORT_SECONDS = 0.3
+
+#: Seconds of the first turn of searches from below and from above; local search has half as long.
+_TURN_SECONDS = 2.0
+
+#: Restarts that only a time limit ends.
+_NO_END = 1 << 62
 
 #: Up to this many nodes ``auto`` reads profiles off the subset-minimum transform: seconds.
 _TRANSFORM_PROFILE_NODES = 22
@@ -105,9 +111,9 @@ def determine(
 def _greatest_r(work: _Work, on_bounds: Callable[[Bounds], None]) -> Bounds:
     """Return bounds on r*, equal unless a limit stopped the work.
 
-    Bounds that cost milliseconds come first, then a short exact search, then bounds that cost a second, then exact
-    searches from below and from above in turns, each longer than the one before, until one r is left to be refuted:
-    whichever way a graph is easy, it is decided that way, and a limit leaves a narrow interval.
+    Bounds that cost milliseconds come first, then bounds that cost a second, each with a short exact search; then local
+    search and exact searches from below and from above in turns, each twice as long as before, until one r is left to
+    refute: whichever way a graph is easy, it is decided that way, and a limit leaves a narrow interval.
     """
     graph, limits = work.graph, work.limits
     found = Bounds(Bound(0, "every graph is 0-robust"), Bound(largest_conceivable_r(graph.n), "r* <= ceil(n/2)"))
@@ -123,7 +129,6 @@ def _greatest_r(work: _Work, on_bounds: Callable[[Bounds], None]) -> Bounds:
         if met != found:
             on_bounds(met)
 
-    seconds = _SHORT_SECONDS
     for thorough in (False, True):
         cheap = bounds(
             graph,
@@ -135,18 +140,20 @@ def _greatest_r(work: _Work, on_bounds: Callable[[Bounds], None]) -> Bounds:
         )
         work.name = work.name if work.stats else "bounds"  # a search has counters
         found = _meet(found, cheap)
-        if not thorough:
-            work.limits = _until(limits, seconds)
-            found = _descend(work, found, on_bounds)
-    is_last = False
+        work.limits = _until(limits, _SHORT_SECONDS)
+        found = _descend(work, found, on_bounds)
+    is_last, turn, seconds = False, 0, _TURN_SECONDS
     while found.lower.value < found.upper.value and not is_last and not limits.expired():
         # Which end gives way sooner is not known, so both have their turns, until one r is left.
-        seconds *= 4
+        turn += 1
+        work.limits = limits
+        found = _look_for_pairs(work, found, min(seconds / 2, limits.seconds_left() / 4), turn, on_bounds)
         work.limits = _until(limits, min(seconds, limits.seconds_left() / 4))
         found = _climb(work, found, on_bounds)
-        is_last = found.lower.value + 1 >= found.upper.value or graph.n > MOST_NODES
+        is_last = (turn > 1 and found.lower.value + 1 >= found.upper.value) or graph.n > MOST_NODES
         work.limits = limits if is_last else _until(limits, seconds)
         found = _descend(work, found, on_bounds)
+        seconds *= 2
     work.limits = limits
     return found
 
@@ -155,6 +162,26 @@ def _until(limits: Limits, seconds: float) -> Limits:
     """Return ``limits`` that end after so many seconds at the latest."""
     ends = time.monotonic() + seconds
     return replace(limits, deadline=ends if limits.deadline is None else min(ends, limits.deadline))
+
+
+def _look_for_pairs(
+    work: _Work, found: Bounds, seconds: float, turn: int, on_bounds: Callable[[Bounds], None]
+) -> Bounds:
+    """Give local search so many seconds, from other starts each turn, to lower the upper bound."""
+    from robustness.bounds.local_search import find_violation
+
+    ends, limits = time.monotonic() + seconds, work.limits
+    while found.lower.value < found.upper.value and (left := ends - time.monotonic()) > 0:
+        r = found.upper.value
+        pair = find_violation(
+            work.graph, r, seed=limits.seed + turn, time_budget=left, restarts=_NO_END, stop=limits.expired
+        )
+        if pair is None:
+            break
+        witness = witness_of(work.graph, pair)
+        found = Bounds(found.lower, Bound(r - 1, "a violating pair found by local search", witness))
+        on_bounds(found)
+    return found
 
 
 def _read_off(work: _Work, found: Bounds) -> Bounds:
