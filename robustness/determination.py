@@ -212,15 +212,10 @@ def _meet(one: Bounds, two: Bounds) -> Bounds:
 def _descend(work: _Work, found: Bounds, on_bounds: Callable[[Bounds], None]) -> Bounds:
     """Decide r = upper, upper - 1, ... until one holds or a limit is reached."""
     while found.lower.value < found.upper.value:
-        r = found.upper.value
-        answer = work.search(r, 1)
-        if answer.verdict is Verdict.UNDECIDED:
+        closer = _decided(work, found, found.upper.value)
+        if closer is None:
             break
-        if answer.verdict is Verdict.ROBUST:
-            found = Bounds(Bound(r, f"{work.name} refuted every violating pair"), found.upper)
-        else:
-            witness = witness_of(work.graph, answer.pair)
-            found = Bounds(found.lower, Bound(r - 1, f"violating pair found by {work.name}", witness))
+        found = closer
         on_bounds(found)
     return found
 
@@ -232,17 +227,23 @@ def _climb(work: _Work, found: Bounds, on_bounds: Callable[[Bounds], None]) -> B
     while the one at the upper bound may never end.
     """
     while found.lower.value + 1 < found.upper.value:
-        r = found.lower.value + 1
-        answer = work.search(r, 1)
-        if answer.verdict is Verdict.UNDECIDED:
+        closer = _decided(work, found, found.lower.value + 1)
+        if closer is None:
             break
-        if answer.verdict is Verdict.ROBUST:
-            found = Bounds(Bound(r, f"{work.name} refuted every violating pair"), found.upper)
-        else:
-            witness = witness_of(work.graph, answer.pair)
-            found = Bounds(found.lower, Bound(r - 1, f"violating pair found by {work.name}", witness))
+        found = closer
         on_bounds(found)
     return found
+
+
+def _decided(work: _Work, found: Bounds, r: int) -> Bounds | None:
+    """Return the bounds after an exact search has decided r-robustness, or None when a limit stopped it."""
+    answer = work.search(r, 1)
+    if answer.verdict is Verdict.UNDECIDED:
+        return None
+    if answer.verdict is Verdict.ROBUST:
+        return Bounds(Bound(r, f"{work.name} refuted every violating pair"), found.upper)
+    witness = witness_of(work.graph, answer.pair)
+    return Bounds(found.lower, Bound(r - 1, f"violating pair found by {work.name}", witness))
 
 
 def _greatest_s(work: _Work, r: int, known: int = 0) -> Bounds:
