@@ -19,7 +19,7 @@ from pathlib import Path
 import networkx as nx
 
 import robustness as rb
-from robustness.trap_search import find_trap
+from robustness.traps import find_trap
 
 NODES = 50
 #: The head of the table in docs/tolerance.md.

@@ -70,7 +70,7 @@ def command(
     verify', which needs nothing but Python. It has been verified before it is written. Exit code 0 robust, 10 not
     robust, 30 undecided (nothing is written).
     """
-    from robustness.certification import certify
+    from robustness.decision.certification import certify
     from robustness.files import replace_file
     from robustness.results import RobustnessResult, Verdict
 
@@ -92,7 +92,7 @@ def command(
             replace_file(canonical, graph.canonical_bytes())
             written["canonical"] = str(canonical)
         if proof_format == "veripb" and result.verdict.value == "robust":
-            from robustness.veripb import export
+            from robustness.decision.veripb import export
 
             model, proof = export(graph.canonical_bytes(), result.certificate, version=veripb_version)
             for suffix, text in ((".opb", model), (".pbp", proof)):

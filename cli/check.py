@@ -127,7 +127,7 @@ def command(
 def _decide(
     graph: Digraph, r: int, s: int, timeout: float | None, options: dict[str, Any], line: ProgressLine
 ) -> Report:
-    from robustness.checking import check_rs_robustness
+    from robustness.decision.front import check_rs_robustness
 
     started = time.perf_counter()
 
@@ -143,7 +143,7 @@ def _decide(
 
 
 def _determine(graph: Digraph, timeout: float | None, options: dict[str, Any], line: ProgressLine) -> Report:
-    from robustness.checking import determine_robustness
+    from robustness.decision.front import determine_robustness
 
     started = time.perf_counter()
 
@@ -165,7 +165,7 @@ def _determine(graph: Digraph, timeout: float | None, options: dict[str, Any], l
 
 
 def _add_profile(report: Report, left: float | None, options: dict[str, Any], line: ProgressLine) -> None:
-    from robustness.checking import robustness_profile
+    from robustness.decision.front import robustness_profile
     from robustness.errors import InternalError, Undecided
 
     if left is not None and left <= 0:

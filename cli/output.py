@@ -16,7 +16,7 @@ import click
 
 if TYPE_CHECKING:
     from certificates.graph import Label
-    from robustness.algorithms import Progress
+    from robustness.decision.algorithms import Progress
     from robustness.digraph import Digraph
     from robustness.results import Bounds
 

@@ -25,8 +25,8 @@ from cli.output import Console, graph_document, pass_console, set_document, set_
 if TYPE_CHECKING:
     from certificates.graph import Label
     from robustness.digraph import Digraph
+    from robustness.paper.experiments import CaseResult
     from robustness.simulation.attacks import Attack
-    from robustness.simulation.experiments import CaseResult
     from robustness.simulation.outcome import Outcome
     from robustness.simulation.scenario import Scenario, Start
     from robustness.simulation.topology import Topology
@@ -341,12 +341,12 @@ def _headline(overall: str, runs: int) -> str:
 
 def _experiment(console: Console, options: dict[str, Any]) -> ExitCode:
     """Run an experiment of the paper, case by case."""
-    from robustness.simulation.experiments import EXPERIMENTS, run_experiment
+    from robustness.paper.experiments import EXPERIMENTS, run_experiment
 
     experiment = EXPERIMENTS[options["experiment"]]
     results = run_experiment(experiment, record=options["plot"] is not None, time_limit=options["timeout"])
     if options["plot"] is not None:
-        from robustness.figures.paper import draw_experiment
+        from robustness.paper.trajectories import draw_experiment
 
         for path in draw_experiment(experiment.name, results, options["plot"]):
             console.talk(f"wrote {path}")

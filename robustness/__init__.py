@@ -5,9 +5,9 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from robustness.algorithms import ALGORITHMS
-from robustness.certification import certify
-from robustness.checking import (
+from robustness.decision.algorithms import ALGORITHMS
+from robustness.decision.certification import certify
+from robustness.decision.front import (
     check_rs_robustness,
     determine_robustness,
     is_r_robust,

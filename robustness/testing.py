@@ -18,7 +18,7 @@ from collections.abc import Hashable, Iterable, Mapping
 from itertools import combinations, permutations
 from typing import TYPE_CHECKING, Any, Literal
 
-from robustness.checking import check_rs_robustness
+from robustness.decision.front import check_rs_robustness
 from robustness.definitions import r_reachable_ids
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter, MissingExtra, Undecided

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 import robustness as rb
 from robustness import ALGORITHMS, Digraph, Verdict
-from robustness.algorithms import Answer, Limits, transform
+from robustness.decision.algorithms import Answer, Limits, transform
 from robustness.errors import InvalidParameter
 from tests.oracles import brute_profile, digraphs, graphs, is_violating, labelled_digraphs
 

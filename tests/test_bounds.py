@@ -14,13 +14,13 @@ from hypothesis import strategies as st
 from networkx.generators.atlas import graph_atlas_g
 
 import robustness as rb
-from robustness.algorithms import Limits, exhaustive
-from robustness.bounds import Growth, Settled, Spectral, all_bounds, bounds, settle
-from robustness.bounds.cuts import closed_pair, degree_pair, half_split, separating_pair
-from robustness.bounds.degree import degree_bound, robust_by_degree
-from robustness.bounds.growth import find_growth, growth_order
-from robustness.bounds.spectral import is_positive_definite, prove_lambda_2_above, spectral_evidence
-from robustness.checking import robustness_profile
+from robustness.decision.algorithms import Limits, exhaustive
+from robustness.decision.bounds import Growth, Settled, Spectral, all_bounds, bounds, settle
+from robustness.decision.bounds.cuts import closed_pair, degree_pair, half_split, separating_pair
+from robustness.decision.bounds.degree import degree_bound, robust_by_degree
+from robustness.decision.bounds.growth import find_growth, growth_order
+from robustness.decision.bounds.spectral import is_positive_definite, prove_lambda_2_above, spectral_evidence
+from robustness.decision.front import robustness_profile
 from robustness.definitions import is_violation
 from robustness.results import Verdict
 

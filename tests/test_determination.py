@@ -8,10 +8,10 @@ import networkx as nx
 import pytest
 
 import robustness as rb
-from robustness import determination
-from robustness.algorithms import Limits
+from robustness.decision import determination
+from robustness.decision.algorithms import Limits
+from robustness.decision.determination import _climb, _Work
 from robustness.definitions import is_violation
-from robustness.determination import _climb, _Work
 from robustness.results import Bound, Bounds
 
 
@@ -46,7 +46,7 @@ def test_the_climb_ends_below_the_upper_bound_or_at_a_pair(directed: bool, seed:
 
 def test_a_graph_too_large_for_the_search_is_left_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without a time limit, too, the work ends, and the bounds hold."""
-    monkeypatch.setattr("robustness.algorithms.subset_search.MOST_NODES", 30)
+    monkeypatch.setattr("robustness.decision.algorithms.subset_search.MOST_NODES", 30)
     result = rb.determine_robustness(nx.random_regular_graph(10, 60, seed=1))
     assert result.verdict is rb.Verdict.UNDECIDED
     assert result.bounds is not None

@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import robustness as rb
-from robustness.algorithms import Limits
-from robustness.algorithms.exhaustive import decide
 from robustness.constructions import is_trap
 from robustness.constructions.small_graphs import each_graph
+from robustness.decision.algorithms import Limits
+from robustness.decision.algorithms.exhaustive import decide
 from robustness.digraph import as_digraph
 from robustness.errors import InvalidParameter, Undecided
 from robustness.graph_search import (

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from networkx.generators.atlas import graph_atlas_g
 
 import robustness as rb
-from robustness.bounds.local_search import TINY, best_upper_bound, fewest_exempt, find_violation
-from robustness.checking import robustness_profile
+from robustness.decision.bounds.local_search import TINY, best_upper_bound, fewest_exempt, find_violation
+from robustness.decision.front import robustness_profile
 from robustness.definitions import is_violation, r_reachable_ids
 
 LONG = 30.0  # seconds: never reached, so that results depend on seeds alone

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robustness import Digraph, Undecided, Verdict
-from robustness.algorithms import Limits, exhaustive, transform
+from robustness.decision.algorithms import Limits, exhaustive, transform
 from tests.oracles import brute_profile, digraphs, graphs, is_violating, labelled_digraphs
 
 NO_LIMITS = Limits()

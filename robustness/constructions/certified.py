@@ -12,10 +12,10 @@ from typing import Any
 
 from certificates import verify
 from certificates.graph import Label, label_key
-from robustness.certification import direct_evidence, encode
-from robustness.checking import limits_of
 from robustness.constructions.guarantee import Guarantee, Guaranteed
 from robustness.constructions.operations import carry_out, replay
+from robustness.decision.certification import direct_evidence, encode
+from robustness.decision.front import limits_of
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InternalError, InvalidParameter, Undecided
 from robustness.results import RobustnessResult, Verdict

@@ -19,9 +19,9 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from certificates.graph import Label, label_key
-from robustness.checking import determine_robustness, is_rs_robust
 from robustness.constructions.family import require
 from robustness.constructions.guarantee import Guarantee, Guaranteed
+from robustness.decision.front import determine_robustness, is_rs_robust
 from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidGraph, InvalidParameter, Undecided

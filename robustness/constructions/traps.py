@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 from certificates.graph import Label
-from robustness.checking import check_rs_robustness
+from robustness.decision.front import check_rs_robustness
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter, Undecided
 from robustness.results import Verdict

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from robustness.algorithms import Pair
+from robustness.decision.algorithms import Pair
 from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter

@@ -25,8 +25,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
-from robustness.checking import check_rs_robustness
 from robustness.constructions.traps import find_trap
+from robustness.decision.front import check_rs_robustness
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter, Undecided
 from robustness.graph_search.connectivity import smallest_separation

@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from robustness.algorithms import Pair
-from robustness.checking import check_rs_robustness
 from robustness.constructions.traps import find_trap
+from robustness.decision.algorithms import Pair
+from robustness.decision.front import check_rs_robustness
 from robustness.digraph import Digraph
 from robustness.errors import InternalError, Undecided
 from robustness.graph_search.connectivity import smallest_separation

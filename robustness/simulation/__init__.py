@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from robustness.simulation.adversaries import ADVERSARIES
 from robustness.simulation.attacks import Attack, attack_from_trap, attack_from_violation
-from robustness.simulation.experiments import EXPERIMENTS, run_experiment
 from robustness.simulation.finding import find_attack
 from robustness.simulation.gains import PromiseWarning, gain_interval
 from robustness.simulation.outcome import Outcome, RunVerdict, Trajectory
@@ -17,7 +16,6 @@ from robustness.simulation.validate import ValidationReport, validate_certificat
 
 __all__ = [
     "ADVERSARIES",
-    "EXPERIMENTS",
     "RULES",
     "SCHEDULES",
     "Attack",
@@ -36,7 +34,6 @@ __all__ = [
     "find_attack",
     "gain_interval",
     "random_start",
-    "run_experiment",
     "schedule_named",
     "simulate",
     "validate_certificate",

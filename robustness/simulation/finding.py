@@ -1,7 +1,7 @@
 """From a network to an attack: search for the evidence, then make the attack of it.
 
 Without delays and with everybody told the same, an attack is a violation of (f+1,f+1)-robustness; under every other
-model it is a solution of :mod:`robustness.trap_search`, which looks for M, S1 and S2 together in one search.
+model it is a solution of :mod:`robustness.traps`, which looks for M, S1 and S2 together in one search.
 """
 
 from __future__ import annotations
@@ -12,13 +12,13 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-from robustness.algorithms import Progress
-from robustness.checking import check_rs_robustness
+from robustness.decision.algorithms import Progress
+from robustness.decision.front import check_rs_robustness
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.results import Verdict
 from robustness.simulation.attacks import Attack, attack_from_trap, attack_from_violation
-from robustness.trap_search import find_trap
+from robustness.traps import find_trap
 
 __all__ = ["ATTACK_MODELS", "Finding", "find_attack"]
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, overload
 
-from robustness.algorithms import Limits, Progress
-from robustness.checking import limits_of
+from robustness.decision.algorithms import Limits, Progress
+from robustness.decision.front import limits_of
 from robustness.digraph import GraphLike, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.threat_models.deciding import Decisions

@@ -26,9 +26,9 @@ from math import comb
 
 from certificates import verify, verify_tolerance
 from certificates.tolerance import FORMAT
-from robustness.algorithms import Pair
-from robustness.certification import certify, encode
 from robustness.constructions.traps import without
+from robustness.decision.algorithms import Pair
+from robustness.decision.certification import certify, encode
 from robustness.digraph import Digraph
 from robustness.errors import InternalError
 from robustness.results import Verdict

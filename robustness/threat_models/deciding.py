@@ -6,14 +6,14 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from robustness.algorithms import Limits, Progress
-from robustness.checking import check_rs_robustness
+from robustness.decision.algorithms import Limits, Progress
+from robustness.decision.front import check_rs_robustness
 from robustness.definitions import largest_conceivable_r, r_reachable_ids
 from robustness.digraph import Digraph
 from robustness.results import RobustnessResult, Verdict
-from robustness.trap_search.finding import decide_trap
-from robustness.trap_search.question import Question, Sets, solves
-from robustness.trap_search.shortcuts import settle_trap
+from robustness.traps.finding import decide_trap
+from robustness.traps.question import Question, Sets, solves
+from robustness.traps.shortcuts import settle_trap
 
 __all__ = ["Decisions", "Finding", "certain_attack", "highest_promise"]
 
@@ -97,7 +97,7 @@ class Decisions:
         return ""
 
     def _implied(self, question: Question) -> Finding | None:
-        """Derive the answer from others: see the lemmas in :mod:`robustness.trap_search.question`."""
+        """Derive the answer from others: see the lemmas in :mod:`robustness.traps.question`."""
         f, two_faces, local = question
         for other, found in self._attacks.items():
             if found.sets is not None and other.f <= f and other.two_faces <= two_faces and other.local <= local:

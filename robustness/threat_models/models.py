@@ -14,7 +14,7 @@ delayed-local      (2f+1)-robust                                a local trap (tw
 =================  ==========================================  =========================================  =======
 
 "No trap for f" says: for every set M of at most f (f-local: of any f-local set of) nodes, ``G - M`` is (f+1)-robust. A
-violation of (f+1,f+1)-robustness contains a trap (:mod:`robustness.trap_search.question`), so under delays the trap is
+violation of (f+1,f+1)-robustness contains a trap (:mod:`robustness.traps.question`), so under delays the trap is
 the sharper of the two necessary conditions. Whether it is also sufficient for second-order vehicles is open, and
 nothing here says that it is.
 """
@@ -26,7 +26,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from robustness.errors import InvalidParameter
-from robustness.trap_search.question import Question
+from robustness.traps.question import Question
 
 __all__ = ["SECOND_ORDER_GAINS", "THREAT_MODELS", "ThreatModel", "threat_model_named"]
 

@@ -35,7 +35,7 @@ class Standing(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class AttackSets:
-    """The sets that hold a network apart: see :mod:`robustness.trap_search.question`.
+    """The sets that hold a network apart: see :mod:`robustness.traps.question`.
 
     ``faces`` 1: M is a subset of S1 and S2 (a violation). ``faces`` 2: M is outside both (a trap).
     """

@@ -15,8 +15,8 @@ import numpy as np
 from certificates import verify_joint
 from certificates.graph import digest
 from certificates.joint import FORMAT, MAX_VALUE, encode_sequence
-from robustness.algorithms import Progress
-from robustness.certification import certify, encode
+from robustness.decision.algorithms import Progress
+from robustness.decision.certification import certify, encode
 from robustness.digraph import GraphLike
 from robustness.errors import InternalError, InvalidParameter
 from robustness.results import Verdict

@@ -24,7 +24,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-from robustness.algorithms import Progress
+from robustness.decision.algorithms import Progress
 from robustness.definitions import is_violation, largest_conceivable_r, require_r_and_s
 from robustness.digraph import GraphLike
 from robustness.errors import InternalError, InvalidParameter
@@ -60,7 +60,7 @@ def check_joint_robustness(
     sequence : TimeVaryingGraph, or list of graphs
         A list is a finite trace: its windows do not wrap, and nothing is claimed beyond its last step.
     r, s : int
-        As for :func:`~robustness.checking.check_rs_robustness`.
+        As for :func:`~robustness.decision.front.check_rs_robustness`.
     window : int, optional
         The length l of the windows, at least 1. None: find the smallest l for which it holds.
     tau : int, optional
@@ -73,12 +73,12 @@ def check_joint_robustness(
     time_limit : float, optional
         Wall-clock seconds for everything; past it the verdict is UNDECIDED.
     jobs, seed : int
-        Threads and random choices of the exact search, as for :func:`~robustness.checking.check_rs_robustness`.
+        Threads and random choices of the exact search, as for :func:`~robustness.decision.front.check_rs_robustness`.
     reuse : collection of str
         Which of the shortcuts ``"equal"``, ``"pair"``, ``"subgraph"``, ``"growth"``, ``"ahead"`` to use: all, unless
         one wants to measure what they save. The verdict does not depend on it.
     progress : callable, optional
-        Called now and then with a :class:`~robustness.algorithms.Progress`.
+        Called now and then with a :class:`~robustness.decision.algorithms.Progress`.
 
     Returns
     -------

@@ -24,9 +24,9 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from robustness.bounds.growth import Growth
-from robustness.checking import check_rs_robustness
-from robustness.deciding import TRANSFORM_NODES
+from robustness.decision.bounds.growth import Growth
+from robustness.decision.front import check_rs_robustness
+from robustness.decision.ladder import TRANSFORM_NODES
 from robustness.digraph import Digraph
 from robustness.results import RobustnessResult, Verdict, Witness
 from robustness.time_varying.growth import Arcs, Seed, find_seed, grow
@@ -65,7 +65,7 @@ class UnionDecider:
     sequence : TimeVaryingGraph
         Whose arc universe the unions are marked in.
     r, s : int
-        As for :func:`~robustness.checking.check_rs_robustness`.
+        As for :func:`~robustness.decision.front.check_rs_robustness`.
     algorithm : str
         For the exact search.
     deadline : float or None

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, overload
 
-from robustness.bounds.growth import Growth
+from robustness.decision.bounds.growth import Growth
 from robustness.digraph import Digraph
 from robustness.errors import Undecided
 from robustness.results import Verdict, Witness
@@ -43,7 +43,7 @@ class UnionVerdict:
     verdict : Verdict
         ROBUST, NOT_ROBUST or UNDECIDED.
     rule : str
-        ``"exact"``: decided by :func:`~robustness.checking.check_rs_robustness`. ``"pair"``: a pair found in an
+        ``"exact"``: decided by :func:`~robustness.decision.front.check_rs_robustness`. ``"pair"``: a pair found in an
         earlier window violates this union too. ``"growth"``: a seed and an order (see ``growth``).
         ``"subgraph"``: it contains arcs that were proven to be enough. ``"shorter-window"``: a shorter window
         with the same start is already robust, and robustness is kept when arcs are added.

@@ -15,8 +15,8 @@ from certificates import CertificateError, VerifiedClaim, verify
 from certificates.graph import decode_graph
 from certificates.rules import Contradiction, Question, State, excludes, settle
 from robustness import Digraph
-from robustness.algorithms import subset_search
-from robustness.checking import limits_of
+from robustness.decision.algorithms import subset_search
+from robustness.decision.front import limits_of
 from tests.oracles import brute_profile
 
 PROPAGATE, ROOT, SATISFIED, MEMBER, EXCLUDE_ONE, EXCLUDE_TWO = 0, 1, 2, 4, 6, 8

@@ -10,7 +10,7 @@ import pytest
 
 from certificates import VerifiedClaim, rules, verify
 from robustness import Digraph
-from robustness.certification import certify
+from robustness.decision.certification import certify
 from robustness.results import Verdict
 from tests.certificates.forging import claims, holds
 from tests.oracles import digraphs, graphs

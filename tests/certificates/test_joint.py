@@ -24,7 +24,7 @@ from certificates import (
 from certificates import __main__ as program
 from certificates.joint import VerifiedJointClaim, encode_sequence
 from robustness import TimeVaryingGraph
-from robustness.certification import certify
+from robustness.decision.certification import certify
 from robustness.errors import InvalidParameter
 from robustness.results import Verdict
 from robustness.time_varying import canonical_sequence, certify_joint

@@ -11,7 +11,7 @@ from click.testing import CliRunner, Result
 
 import robustness as rb
 from cli.main import robustness
-from robustness.algorithms import exhaustive
+from robustness.decision.algorithms import exhaustive
 from robustness.definitions import is_violation
 from robustness.files import encode_topology, read_topology, write_topology
 
@@ -120,7 +120,7 @@ class TestJson:
             raise rb.Undecided("late")
 
         monkeypatch.setattr("cli.check.PROFILE_NODES", 5)
-        monkeypatch.setattr("robustness.checking.robustness_profile", late)
+        monkeypatch.setattr("robustness.decision.front.robustness_profile", late)
         found = document("--timeout", "9")
         assert (found["verdict"], found["profile"]) == ("determined", None)
 
@@ -128,7 +128,7 @@ class TestJson:
         def interrupt(*_: object, **__: object) -> None:
             raise KeyboardInterrupt
 
-        monkeypatch.setattr("robustness.checking.robustness_profile", interrupt)
+        monkeypatch.setattr("robustness.decision.front.robustness_profile", interrupt)
         outcome = check("--json")
         found = json.loads(outcome.stdout)
         assert outcome.exit_code == 130
@@ -142,7 +142,7 @@ class TestJson:
             on_bounds(known)
             raise KeyboardInterrupt
 
-        monkeypatch.setattr("robustness.checking.determine_robustness", interrupted)
+        monkeypatch.setattr("robustness.decision.front.determine_robustness", interrupted)
         outcome = check("--json")
         found = json.loads(outcome.stdout)
         assert outcome.exit_code == 130

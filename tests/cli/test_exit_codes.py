@@ -156,7 +156,7 @@ def test_bad_input(name: str) -> None:
 
 
 def test_an_internal_error_says_that_it_is_no_verdict(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robustness.checking.determine_robustness", lambda *_, **__: 1 / 0)
+    monkeypatch.setattr("robustness.decision.front.determine_robustness", lambda *_, **__: 1 / 0)
     outcome = CliRunner().invoke(robustness, ["check", SQUARE])
     assert outcome.exit_code == 1
     assert outcome.stderr.startswith("internal error, not a verdict: ZeroDivisionError")
@@ -164,7 +164,7 @@ def test_an_internal_error_says_that_it_is_no_verdict(monkeypatch: pytest.Monkey
 
 def test_a_contradiction_between_profile_and_r_is_an_internal_error(monkeypatch: pytest.MonkeyPatch) -> None:
     for profile in ({1: 3, 2: 0}, {1: 4, 2: 1}):
-        monkeypatch.setattr("robustness.checking.robustness_profile", lambda *_, table=profile, **__: table)
+        monkeypatch.setattr("robustness.decision.front.robustness_profile", lambda *_, table=profile, **__: table)
         outcome = CliRunner().invoke(robustness, ["check", SQUARE])
         assert outcome.exit_code == 1
         assert "contradicts" in outcome.stderr

@@ -24,7 +24,7 @@ SQUARE = str(ROOT / "tests" / "data" / "square.json")
 #: Work that swallows every exception, as a compiler's callback does, and then waits in C for ever.
 STUBBORN = """
 import threading, time
-import robustness.checking
+import robustness.decision.front
 from cli.main import main
 
 def stubborn(*arguments, **options):
@@ -35,7 +35,7 @@ def stubborn(*arguments, **options):
         except BaseException:
             pass
 
-robustness.checking.determine_robustness = stubborn
+robustness.decision.front.determine_robustness = stubborn
 main()
 """
 
@@ -68,7 +68,7 @@ def test_an_overrun_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(interruption, "GRACE", 0.0)
     release = threading.Event()
     for name, question in ("determine_robustness", []), ("check_rs_robustness", ["-r", "2"]):
-        monkeypatch.setattr(f"robustness.checking.{name}", lambda *_, **__: release.wait(60))
+        monkeypatch.setattr(f"robustness.decision.front.{name}", lambda *_, **__: release.wait(60))
         outcome = CliRunner().invoke(robustness, ["check", SQUARE, "--json", "--timeout", "0.1", *question])
         assert outcome.exit_code == 30
         found = json.loads(outcome.stdout)
@@ -79,7 +79,7 @@ def test_an_overrun_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_profile_that_overruns_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(interruption, "GRACE", 0.0)
     release = threading.Event()
-    monkeypatch.setattr("robustness.checking.robustness_profile", lambda *_, **__: release.wait(60))
+    monkeypatch.setattr("robustness.decision.front.robustness_profile", lambda *_, **__: release.wait(60))
     outcome = CliRunner().invoke(robustness, ["check", SQUARE, "--json", "--timeout", "2"])
     release.set()
     assert outcome.exit_code == 0

@@ -16,7 +16,8 @@ from cli import simulate as simulate_command
 from cli.exit_codes import ExitCode
 from cli.main import robustness
 from robustness.files import encode_topology
-from robustness.simulation import ADVERSARIES, EXPERIMENTS, RULES, SCHEDULES
+from robustness.paper.experiments import EXPERIMENTS
+from robustness.simulation import ADVERSARIES, RULES, SCHEDULES
 from robustness.simulation.evidence import Claim
 from robustness.simulation.finding import ATTACK_MODELS
 from robustness.simulation.models import FAULT_MODELS

@@ -11,7 +11,7 @@ from click.testing import CliRunner, Result
 
 import robustness as rb
 from cli.main import robustness
-from robustness.certification import certify
+from robustness.decision.certification import certify
 from robustness.files import encode_topology, write_topology
 
 WHEEL = nx.wheel_graph(5)

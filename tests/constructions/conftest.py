@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from robustness.algorithms import Limits
-from robustness.algorithms.exhaustive import decide
+from robustness.decision.algorithms import Limits
+from robustness.decision.algorithms.exhaustive import decide
 from robustness.definitions import largest_conceivable_r
 from robustness.digraph import as_digraph
 from robustness.results import Verdict

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robustness.constructions.lemma_1 import STATEMENTS, profile
-from robustness.constructions.lemma_audit import audit, page
 from robustness.digraph import Digraph, as_digraph
+from robustness.paper.lemma_audit import audit, page
 from robustness.testing import digraphs, graphs, rs_robust_graphs
 
 PAGE = Path(__file__).parents[2] / "docs" / "lemma-1.md"

@@ -13,20 +13,18 @@ import pytest
 
 from robustness.digraph import as_digraph
 from robustness.errors import InvalidParameter, MissingExtra, Undecided
-from robustness.figures.paper import draw_experiment
 from robustness.figures.simulation import Run, draw_runs
+from robustness.paper.experiments import EXPERIMENTS, CaseResult, experiment_named, run_experiment
+from robustness.paper.trajectories import draw_experiment
 from robustness.simulation import (
-    EXPERIMENTS,
     Scenario,
     Start,
     Topology,
     as_topology,
     random_start,
-    run_experiment,
     simulate,
 )
 from robustness.simulation.adversaries import Alternating, Constant, Liar, Noise
-from robustness.simulation.experiments import CaseResult, experiment_named
 from robustness.simulation.replay import _KINDS, decode_run, encode_run, read_run, write_run
 from robustness.simulation.schedules import ConstantDelays, EveryStep, PeriodicUpdates, RandomDelays, Schedule
 

@@ -10,7 +10,7 @@ import networkx as nx
 import pytest
 
 import robustness as rb
-from robustness.algorithms import Progress
+from robustness.decision.algorithms import Progress
 from robustness.results import RobustnessResult
 from robustness.time_varying import JointResult, TimeVaryingGraph, check_joint_robustness, deciding, joint_curve
 

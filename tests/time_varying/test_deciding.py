@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import robustness as rb
-from robustness.algorithms.exhaustive import decide as exhaustive
+from robustness.decision.algorithms.exhaustive import decide as exhaustive
 from robustness.time_varying import TimeVaryingGraph, UnionVerdict, check_joint_robustness
 from robustness.time_varying.deciding import RULES, UnionDecider
 from robustness.time_varying.growth import Arcs, Seed, find_seed, grow

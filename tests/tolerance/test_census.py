@@ -10,7 +10,7 @@ import pytest
 
 import robustness as rb
 from robustness.constructions.small_graphs import digraph_of_masks, graphs_up_to_isomorphism
-from robustness.paper_audit.census import CensusRow, census, one_node_more
+from robustness.paper.audit.census import CensusRow, census, one_node_more
 from tests.oracles import graphs
 
 

@@ -17,7 +17,7 @@ from certificates.__main__ import main as kernel
 from cli.exit_codes import ExitCode
 from cli.main import robustness
 from robustness.threat_models import THREAT_MODELS
-from robustness.trap_search import find_trap
+from robustness.traps import find_trap
 
 DOCS = Path(__file__).parents[2] / "docs"
 TUTORIAL = (DOCS / "tutorial-platoon.md").read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ import pytest
 
 import robustness as rb
 from robustness.constructions.lemma_1 import STATEMENTS
-from robustness.paper_audit import (
+from robustness.paper.audit import (
     Claim,
     about_graphs,
     about_motion,
@@ -20,10 +20,10 @@ from robustness.paper_audit import (
     about_runs,
     census,
 )
-from robustness.paper_audit.__main__ import main
-from robustness.paper_audit.claims import PLACES, Outcome, example, failing, holding, in_words
-from robustness.paper_audit.drawing import svg
-from robustness.paper_audit.page import CLAIMS, census_table
+from robustness.paper.audit.__main__ import main
+from robustness.paper.audit.claims import PLACES, Outcome, example, failing, holding, in_words
+from robustness.paper.audit.drawing import svg
+from robustness.paper.audit.page import CLAIMS, census_table
 from robustness.threat_models import tolerance
 
 DOCS = Path(__file__).parents[2] / "docs"

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import robustness as rb
-from robustness.trap_search import find_trap
-from robustness.trap_search.kernel import MALICIOUS, NORMAL, F, P, Q, T, Z, assume, propagate
-from robustness.trap_search.question import Question, Sets, solves
-from robustness.trap_search.searching import _whole_state
+from robustness.traps import find_trap
+from robustness.traps.kernel import MALICIOUS, NORMAL, F, P, Q, T, Z, assume, propagate
+from robustness.traps.question import Question, Sets, solves
+from robustness.traps.searching import _whole_state
 from tests.tolerance.brute_force import has_standing_attack, has_trap
 
 KINDS = list(product((False, True), (False, True)))

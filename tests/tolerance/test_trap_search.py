@@ -16,13 +16,13 @@ import networkx as nx
 import pytest
 
 import robustness as rb
-from robustness.algorithms import Limits, Progress
 from robustness.constructions import two_f_robust_counterexample
+from robustness.decision.algorithms import Limits, Progress
 from robustness.errors import InternalError, InvalidParameter, Undecided
-from robustness.trap_search import TRAP_ALGORITHMS, find_trap
-from robustness.trap_search.finding import decide_trap
-from robustness.trap_search.question import Question, Sets, obeys_bound, solves
-from robustness.trap_search.shortcuts import settle_trap
+from robustness.traps import TRAP_ALGORITHMS, find_trap
+from robustness.traps.finding import decide_trap
+from robustness.traps.question import Question, Sets, obeys_bound, solves
+from robustness.traps.shortcuts import settle_trap
 from tests.oracles import digraphs, graphs
 from tests.tolerance.brute_force import has_standing_attack, has_trap
 
@@ -162,7 +162,7 @@ class TestLargerGraphs:
     def test_a_deep_search_grows_its_stack(self, monkeypatch: pytest.MonkeyPatch) -> None:
         graphs = [nx.random_regular_graph(6, 30, seed=seed) for seed in range(3)]
         before = [find_trap(graph, 2, algorithm="search", look_ahead=False).stats["nodes"] for graph in graphs]
-        monkeypatch.setattr("robustness.trap_search.searching._LEVELS", 2)
+        monkeypatch.setattr("robustness.traps.searching._LEVELS", 2)
         assert [find_trap(graph, 2, algorithm="search", look_ahead=False).stats["nodes"] for graph in graphs] == before
 
     @pytest.mark.parametrize(("d", "f", "expected"), [(8, 2, False), (5, 1, False), (6, 2, True), (8, 3, True)])
@@ -264,7 +264,7 @@ class TestMisuse:
 
     def test_a_wrong_solution_is_an_internal_error(self, monkeypatch: pytest.MonkeyPatch) -> None:
         wrong = (True, Sets(frozenset(), frozenset({0}), frozenset({1})), {})
-        monkeypatch.setattr("robustness.trap_search.cp_sat.decide", lambda *_: wrong)
+        monkeypatch.setattr("robustness.traps.cp_sat.decide", lambda *_: wrong)
         with pytest.raises(InternalError, match="please report"):
             find_trap(nx.complete_graph(5), 1, algorithm="cp-sat")
 
@@ -284,7 +284,7 @@ def test_f_beyond_n() -> None:
 
 def test_the_solver_is_not_imported_before_it_is_asked_for() -> None:
     program = (
-        "import sys, networkx as nx; from robustness.trap_search import find_trap; "
+        "import sys, networkx as nx; from robustness.traps import find_trap; "
         "find_trap(nx.path_graph(3), 1); print({'ortools', 'matplotlib'} & set(sys.modules))"
     )
     root = Path(__file__).resolve().parents[2]

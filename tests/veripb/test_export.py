@@ -16,11 +16,11 @@ import pytest
 import robustness as rb
 from certificates import RejectedCertificate
 from certificates.graph import decode_graph
-from robustness.certification import certify, encode
 from robustness.constructions import blow_up, certify_derivation, guaranteed
+from robustness.decision.certification import certify, encode
+from robustness.decision.veripb import export
+from robustness.decision.veripb.model import Model
 from robustness.errors import InvalidParameter
-from robustness.veripb import export
-from robustness.veripb.model import Model
 from tests.certificates.forging import certificate as forged
 from tests.certificates.forging import claims, wander
 from tests.oracles import brute_profile, digraphs, graphs, is_violating

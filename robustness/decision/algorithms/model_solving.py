@@ -1,0 +1,208 @@
+"""Running a violation model on a MathOpt solver: limits, interruption, and what every outcome means.
+
+The solver runs in a worker thread and the caller waits for it in short steps, so that Ctrl-C is served at once
+(Python runs signal handlers in the main thread, between byte codes). CP-SAT is then interrupted. HiGHS and SCIP
+cannot be, through MathOpt: HiGHS ignores the request and SCIP's handler writes errors to stderr. Their daemon thread
+is left to its time limit, or to the end of the process, which does not wait for it.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from concurrent.futures import Future, wait
+from datetime import timedelta
+from typing import TYPE_CHECKING, Any
+
+from robustness.decision.algorithms import Answer, Limits, Pair, Progress
+from robustness.decision.algorithms.violation_model import (
+    ViolationModel,
+    all_pairs,
+    compatible_pairs,
+    largest_r_model,
+    pair_model,
+)
+from robustness.definitions import is_violation, r_reachable_ids
+from robustness.digraph import Digraph
+from robustness.errors import InternalError, Undecided
+from robustness.results import Bound, Bounds, Verdict, Witness
+
+if TYPE_CHECKING:
+    from ortools.math_opt.python import mathopt
+
+__all__ = ["decide", "largest_r", "largest_s", "verdict_of"]
+
+#: Seconds between two looks at the clock while a solver works.
+_STEP = 0.1
+#: Solvers look at their clock now and then only; past this many seconds their thread is left alone.
+_GRACE = 0.5
+#: Three years: what the solvers are told for longer limits, which would overflow them.
+_LONGEST = 1e8
+#: A dual bound may exceed the integer it stands for by the solvers' tolerance (1e-6, times the size of the bound).
+_SLACK = 1e-3
+
+
+def decide(graph: Digraph, r: int, s: int, limits: Limits, solver: str, *, pair_counting: bool) -> Answer:
+    """Decide (r,s)-robustness with the named MathOpt solver.
+
+    The model: :mod:`~robustness.decision.algorithms.violation_model`.
+    """
+    stats: dict[str, Any] = {"solver": solver.lower()}
+    try:
+        compatible = compatible_pairs(graph, r, s, limits) if pair_counting else all_pairs(graph.n)
+        if not any(compatible):
+            return Answer(Verdict.ROBUST, stats=stats | {"solver_status": "not needed: pair counting"})
+        problem = pair_model(graph, r, s, compatible)
+        result = _solve(problem.model, solver, limits)
+    except Undecided as limit:
+        return Answer(Verdict.UNDECIDED, stats=stats | {"reason": str(limit)})
+    reason = result.termination.reason
+    stats |= {"solver_status": reason.name.lower(), "nodes": result.solve_stats.node_count}
+    verdict = verdict_of(reason)
+    if verdict is Verdict.UNDECIDED:
+        return Answer(verdict, stats=stats | {"reason": _limit_text(result.termination)})
+    pair = _best_pair(problem, result) if verdict is Verdict.NOT_ROBUST else None
+    if verdict is Verdict.NOT_ROBUST and not (pair and is_violation(graph, pair.first, pair.second, r, s)):
+        stats["reason"] = f"{solver} returned no pair that is a violation: numerical tolerances"
+        return Answer(Verdict.UNDECIDED, stats=stats)
+    return Answer(verdict, pair, stats)
+
+
+def verdict_of(reason: mathopt.TerminationReason) -> Verdict:
+    """Return what the end of a search for a violating pair says; NOT_ROBUST still needs its pair checked.
+
+    Every variable is bounded, so "infeasible or unbounded" is infeasible, and "unbounded" is an error of the solver.
+    """
+    from ortools.math_opt.python.mathopt import TerminationReason as Reason
+
+    match reason:
+        case Reason.OPTIMAL | Reason.FEASIBLE:
+            return Verdict.NOT_ROBUST
+        case Reason.INFEASIBLE | Reason.INFEASIBLE_OR_UNBOUNDED:
+            return Verdict.ROBUST
+        case Reason.UNBOUNDED | Reason.IMPRECISE | Reason.NO_SOLUTION_FOUND:
+            return Verdict.UNDECIDED
+        case Reason.NUMERICAL_ERROR | Reason.OTHER_ERROR:
+            return Verdict.UNDECIDED
+        case _:  # A reason that a later OR-tools adds claims nothing here.
+            return Verdict.UNDECIDED
+
+
+def largest_s(graph: Digraph, r: int, limits: Limits, solver: str, *, pair_counting: bool) -> Bounds:
+    """Return bounds on s_max(r), equal when the named solver finished: the least ``|X_S1| + |X_S2|``."""
+    nothing = Bounds(Bound(0, "nothing proven"), Bound(graph.n, "s_max(r) <= n"))
+    try:
+        compatible = compatible_pairs(graph, r, graph.n, limits) if pair_counting else all_pairs(graph.n)
+        problem = pair_model(graph, r, None, compatible)
+        result = _solve(problem.model, solver, limits)
+    except Undecided:
+        return nothing
+    if verdict_of(result.termination.reason) is Verdict.ROBUST:
+        return Bounds(Bound(graph.n, f"{solver}: no violating pair for any s"), nothing.upper)
+    upper, pair = nothing.upper, _best_pair(problem, result)
+    if pair is not None and is_violation(graph, pair.first, pair.second, r, graph.n):
+        exempt = sum(len(r_reachable_ids(graph, side, r)) for side in pair)
+        upper = Bound(exempt, "violating pair", _witness(graph, pair))
+    return Bounds(_lower(result, solver, upper.value), upper)
+
+
+def largest_r(graph: Digraph, limits: Limits, solver: str) -> Bounds:
+    r"""Return bounds on r*, equal when the named solver finished: the least ``max |N_i \ S_k|`` over all pairs."""
+    if graph.n < 2:
+        settled = Bound(graph.n, "convention for fewer than two nodes")
+        return Bounds(settled, settled)
+    top = Bound((graph.n + 1) // 2, "r* <= ceil(n/2)")
+    problem = largest_r_model(graph)
+    try:
+        result = _solve(problem.model, solver, limits)
+    except Undecided:
+        return Bounds(Bound(0, "every graph is 0-robust"), top)
+    upper, pair = top, _best_pair(problem, result)
+    if pair is not None and pair.first and pair.second and not pair.first & pair.second:
+        most = max(sum(j not in side for j in graph.in_neighbours(i).tolist()) for side in pair for i in side)
+        upper = min(top, Bound(most, "violating pair", _witness(graph, pair)), key=lambda bound: bound.value)
+    return Bounds(_lower(result, solver, upper.value), upper)
+
+
+def _lower(result: mathopt.SolveResult, solver: str, upper: int) -> Bound:
+    """Return the proven lower bound on an integer minimum, rounded up from the solver's dual bound."""
+    dual = result.termination.objective_bounds.dual_bound
+    if not math.isfinite(dual) or dual <= 0:
+        return Bound(0, "nothing proven")
+    return Bound(min(upper, math.ceil(dual - _SLACK)), f"{solver}: dual bound")
+
+
+def _best_pair(problem: ViolationModel, result: mathopt.SolveResult) -> Pair | None:
+    for solution in result.solutions:
+        if solution.primal_solution is not None:
+            return problem.pair(solution.primal_solution.variable_values)
+    return None
+
+
+def _witness(graph: Digraph, pair: Pair) -> Witness:
+    return Witness(graph.labels_of(pair.first), graph.labels_of(pair.second))
+
+
+def _limit_text(termination: mathopt.Termination) -> str:
+    limit = f" ({termination.limit.name.lower()})" if termination.limit is not None else ""
+    detail = f": {termination.detail}" if termination.detail else ""
+    return f"the solver stopped with {termination.reason.name.lower()}{limit}{detail}"
+
+
+def _solve(model: mathopt.Model, solver: str, limits: Limits) -> mathopt.SolveResult:
+    """Run a solver in a worker thread until it answers, or raise Undecided soon after the deadline."""
+    from ortools.math_opt.python import mathopt
+    from ortools.util.python.solve_interrupter import SolveInterrupter
+
+    if limits.expired():
+        raise Undecided("the time limit was reached: raise it")
+    kind = mathopt.SolverType[solver]
+    parameters = _parameters(kind, limits)
+    interrupter = SolveInterrupter() if kind is mathopt.SolverType.CP_SAT else None
+    outcome: Future[mathopt.SolveResult] = Future()
+
+    def work() -> None:
+        try:
+            outcome.set_result(mathopt.solve(model, kind, params=parameters, interrupter=interrupter))
+        except Exception as problem:  # noqa: BLE001  # the waiting thread raises it
+            outcome.set_exception(problem)
+
+    worker = threading.Thread(target=work, name=f"robustness-{solver.lower()}", daemon=True)
+    try:
+        worker.start()
+        _wait(outcome, solver, limits)
+    except BaseException:
+        if interrupter is not None:
+            interrupter.interrupt()
+            worker.join()
+        raise
+    problem = outcome.exception()
+    if problem is not None:
+        raise InternalError(f"{solver} failed ({problem}): please report, and use another algorithm") from problem
+    return outcome.result()
+
+
+def _wait(outcome: Future[Any], solver: str, limits: Limits) -> None:
+    started = time.monotonic()
+    while not wait([outcome], timeout=_STEP).done:
+        if limits.deadline is not None and time.monotonic() > limits.deadline + _GRACE:
+            raise Undecided(f"the time limit was reached and {solver} did not stop: raise the limit")
+        if limits.progress is not None:
+            limits.progress(Progress(0, f"{solver} is at work, {time.monotonic() - started:.0f} s"))
+
+
+def _parameters(kind: mathopt.SolverType, limits: Limits) -> mathopt.SolveParameters:
+    from ortools.math_opt.python import mathopt
+
+    seconds = limits.seconds_left()
+    parameters = mathopt.SolveParameters(
+        time_limit=None if math.isinf(seconds) else timedelta(seconds=min(seconds, _LONGEST)),
+        # MathOpt refuses a number of threads for HiGHS, whose tree search uses one.
+        threads=None if kind is mathopt.SolverType.HIGHS else limits.jobs,
+        random_seed=limits.seed % (1 << 31),
+    )
+    # Ctrl-C belongs to Python.
+    parameters.cp_sat.catch_sigint_signal = False
+    parameters.gscip.bool_params["misc/catchctrlc"] = False
+    return parameters

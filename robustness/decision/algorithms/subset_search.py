@@ -1,0 +1,291 @@
+"""Pruned search over node sets with pair counting and look-ahead; the workhorse of the toolkit.
+
+Non-r-reachable sets are closed under union, so inside any candidate set there is one largest, found by peeling; the
+search keeps such candidate sets for both sides of a violating pair and shrinks them by the rules of
+:mod:`robustness.decision.algorithms.search_kernel` (peel, force, disjoint, count, look-ahead). The swap symmetry of
+pairs is broken by roots: refute every pair that has v as a satisfied node of S1; then v is satisfied in neither set. A
+percolating seed of roots empties the candidates, and the refutation is complete.
+
+Every step is recorded on demand in the transcript that ``certificates`` replays, and every rule has a switch:
+``blockers=0`` turns counting off, ``blockers=1`` leaves pair counting only, ``look_ahead=False`` branches blindly.
+
+Threads share the work by cubes: a thread that runs dry takes the shallowest pending subproblem of a busy one. The
+verdict does not depend on who solves what; which violating pair is found first may.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from robustness.decision.algorithms import Answer, Limits, Pair, Progress
+from robustness.decision.algorithms.search_loop import (
+    CLOSED,
+    DONATED,
+    FAILED,
+    FLUSH,
+    FOUND,
+    GIVEN,
+    GROW,
+    NODES,
+    PAUSED,
+    PENDING,
+    PROBES,
+    SYMMETRIC,
+    search,
+)
+from robustness.digraph import Digraph
+from robustness.errors import InternalError, InvalidParameter
+from robustness.results import Verdict
+
+__all__ = ["MOST_NODES", "decide"]
+
+_Words = npt.NDArray[np.uint64]
+
+#: A slice of the search aims at this many seconds between two looks at the clock, the stop flag and idle threads.
+_SLICE = 0.02
+
+#: Masks take n * n / 8 bytes; beyond this many nodes the search is not the right tool.
+MOST_NODES = 20_000
+
+
+@dataclass(slots=True)
+class Cube:
+    """A subproblem: a state that has not been propagated, and whether it is still symmetric in the two sides.
+
+    ``transcript`` receives its refutation: bytes, and cubes that were handed on, in the order of the proof.
+    """
+
+    state: _Words
+    symmetric: bool
+    transcript: list[bytes | Cube] = field(default_factory=list)
+
+    def joined(self) -> bytes:
+        """Return the whole transcript, those of handed-on cubes in their places (without recursion)."""
+        parts: list[bytes] = []
+        waiting: list[bytes | Cube] = [self]
+        while waiting:
+            part = waiting.pop()
+            if isinstance(part, bytes):
+                parts.append(part)
+            else:
+                waiting.extend(reversed(part.transcript))
+        return b"".join(parts)
+
+
+def decide(
+    graph: Digraph,
+    r: int,
+    s: int,
+    limits: Limits,
+    *,
+    transcript: bool = False,
+    blockers: int = 2,
+    look_ahead: bool = True,
+) -> Answer:
+    """Decide (r,s)-robustness by pruned search; exponential in the worst case, honours every limit.
+
+    Parameters
+    ----------
+    transcript : bool
+        Record the refutation, for a certificate.
+    blockers : 0, 1 or 2
+        How many satisfied nodes the counting rule may combine; 0 switches it off.
+    look_ahead : bool
+        Whether branching tries both literals of every candidate first.
+    """
+    if blockers not in (0, 1, 2):
+        raise InvalidParameter(f"blockers is 0, 1 or 2, not {blockers!r}")
+    if graph.n > MOST_NODES:
+        return Answer(Verdict.UNDECIDED, stats={"reason": f"subset-search takes at most {MOST_NODES} nodes"})
+    return _Search(graph, r, s, limits, transcript, blockers, look_ahead).run()
+
+
+class _Search:
+    """One question, its queue of cubes, and the threads that empty it."""
+
+    def __init__(
+        self, graph: Digraph, r: int, s: int, limits: Limits, transcript: bool, blockers: int, look_ahead: bool
+    ) -> None:
+        self.hears = graph.in_words
+        self.width = _width(self.hears.shape[1])
+        self.need = np.maximum(graph.in_degrees - r + 1, 0).astype(np.int64)
+        self.spare = s - 1
+        self.limits = limits
+        self.transcript = transcript
+        self.blockers = blockers
+        self.look_ahead = int(look_ahead)
+        self.root = Cube(_whole_state(graph.n), symmetric=True)
+        self.lock = threading.Condition()
+        self.queue: deque[Cube] = deque([self.root])
+        self.busy = 0
+        self.stopped = False
+        self.reason = ""
+        self.pair: Pair | None = None
+        self.failure: BaseException | None = None
+        self.counters = np.zeros((max(1, limits.jobs), 3), np.int64)
+        self.cubes = 1
+        self._given: dict[tuple[int, int], Cube] = {}
+        self.reported = time.monotonic()
+
+    def run(self) -> Answer:
+        """Search to the end, a pair or a limit; Ctrl-C stops all threads and is passed on."""
+        helpers = [threading.Thread(target=self._work, args=(k,), daemon=True) for k in range(1, self.limits.jobs)]
+        try:
+            for helper in helpers:
+                helper.start()
+            self._work(0)
+        finally:
+            with self.lock:
+                self.stopped = True
+                self.lock.notify_all()
+            for helper in helpers:
+                helper.join()
+        if self.failure is not None:
+            raise self.failure
+        total = self.counters.sum(axis=0)
+        stats: dict[str, Any] = {
+            "nodes": int(total[NODES]),
+            "failed_literals": int(total[FAILED]),
+            "probes": int(total[PROBES]),
+            "cubes": self.cubes,
+        }
+        if self.pair is not None:
+            return Answer(Verdict.NOT_ROBUST, self.pair, stats)
+        if self.reason:
+            return Answer(Verdict.UNDECIDED, stats=stats | {"reason": self.reason})
+        return Answer(Verdict.ROBUST, stats=stats, transcript=self.root.joined() if self.transcript else None)
+
+    def _work(self, number: int) -> None:
+        try:
+            while (cube := self._next_cube()) is not None:
+                self._solve(cube, number)
+                with self.lock:
+                    self.busy -= 1
+                    self.lock.notify_all()
+        except BaseException as problem:
+            with self.lock:
+                self.failure, self.stopped = problem, True
+                self.lock.notify_all()
+            if number == 0:
+                raise
+
+    def _next_cube(self) -> Cube | None:
+        """Wait for a cube; None when the search is over (every thread idle and the queue empty, or stopped)."""
+        with self.lock:
+            while not self.queue and self.busy and not self.stopped:
+                self.lock.wait(0.05)
+            if self.stopped or not self.queue:
+                return None
+            self.busy += 1
+            return self.queue.popleft()
+
+    def _solve(self, cube: Cube, number: int) -> None:
+        n, words = self.hears.shape
+        stack = np.zeros((64, 8, words), np.uint64)
+        table = np.zeros((64, 3), np.int64)
+        stack[0], table[0] = cube.state, (1, cube.symmetric, 0)
+        buffer = np.empty(32 * n * n + 4096 + 2**16 if self.transcript else 1, np.uint8)
+        pair = np.zeros((2, words), np.uint64)
+        level, place, quota = 0, 0 if self.transcript else -1, 1
+        while True:
+            begun = time.monotonic()
+            status, level, place = search(
+                self.width,
+                stack,
+                table,
+                level,
+                self.hears,
+                self.need,
+                self.spare,
+                self.blockers,
+                self.look_ahead,
+                quota,
+                self.counters[number],
+                pair,
+                buffer,
+                place,
+            )
+            if self.transcript and status in (CLOSED, FLUSH, DONATED):
+                cube.transcript.append(buffer[:place].tobytes())
+                place = 0
+            if status == CLOSED:
+                return
+            if status == FOUND:
+                self._stop(pair=Pair(_ids(pair[0]), _ids(pair[1])))
+                return
+            if status == GROW:
+                stack = np.concatenate([stack, np.zeros_like(stack)])
+                table = np.concatenate([table, np.zeros_like(table)])
+            elif status == DONATED:
+                cube.transcript.append(self._given[id(cube), level])
+                table[level, GIVEN] = 0
+                level -= 1
+                if level < 0:
+                    return
+            elif status == PAUSED:
+                took = time.monotonic() - begun
+                quota = int(min(max(quota * min(4.0, _SLICE / max(took, 1e-6)), 1), 1 << 30))
+                if self._must_stop(number):
+                    return
+                self._donate(cube, stack, table, level)
+            elif status != FLUSH:
+                raise InternalError(f"the search kernel stopped with status {status}: please report")
+
+    def _donate(self, cube: Cube, stack: _Words, table: npt.NDArray[np.int64], level: int) -> None:
+        """Hand the shallowest pending subproblem to an idle thread, if there is one."""
+        with self.lock:
+            if self.limits.jobs == 1 or self.queue or self.busy >= self.limits.jobs:
+                return
+            for k in range(level):
+                if table[k, PENDING] and not table[k, GIVEN]:
+                    given = Cube(stack[k].copy(), bool(table[k, SYMMETRIC]))
+                    table[k, GIVEN] = 1
+                    self._given[id(cube), k] = given
+                    self.queue.append(given)
+                    self.cubes += 1
+                    self.lock.notify_all()
+                    return
+
+    def _stop(self, *, pair: Pair | None = None, reason: str = "") -> None:
+        with self.lock:
+            if not self.stopped:
+                self.stopped, self.pair, self.reason = True, pair, reason
+            self.lock.notify_all()
+
+    def _must_stop(self, number: int) -> bool:
+        if self.limits.expired():
+            self._stop(reason="the time limit was reached")
+        now = time.monotonic()
+        if number == 0 and self.limits.progress is not None and now - self.reported > 0.2:
+            self.reported = now
+            nodes = int(self.counters[:, NODES].sum())
+            self.limits.progress(Progress(nodes, f"{len(self.queue) + self.busy} cubes open"))
+        return self.stopped
+
+
+def _whole_state(n: int) -> _Words:
+    """Return the state in which every node may be a satisfied member of either set."""
+    state = np.zeros((8, max(1, -(-n // 64))), np.uint64)
+    for node in range(n):
+        state[:4, node // 64] |= np.uint64(1) << np.uint64(node % 64)
+    return state
+
+
+def _width(words: int) -> tuple[int, ...] | npt.NDArray[np.int64]:
+    """Return something of length ``words`` that the kernels loop over.
+
+    The length of a tuple is part of its type, so that graphs of up to 64 and up to 128 nodes get kernels of their own
+    whose loops over words are unrolled (1.4 times faster for one word); an array serves all others.
+    """
+    return (0,) * words if words <= 2 else np.zeros(words, np.int64)
+
+
+def _ids(words: _Words) -> frozenset[int]:
+    return frozenset(np.flatnonzero(np.unpackbits(words.view(np.uint8), bitorder="little")).tolist())

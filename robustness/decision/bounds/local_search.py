@@ -1,0 +1,374 @@
+"""Violating pairs by heuristics: upper bounds on r* and on s_max(r), each a pair anybody can check.
+
+Nothing here proves robustness. A pair found is counted again by the definition before it is returned. Finding the
+pair for r* + 1 first is what lets exact search concentrate on refuting a single r.
+
+What is tried, cheapest first: the smallest in-degree; two sets that hear nobody outside (exact for r = 1); cuts of a
+few node orders, peeled to their cores; small sets around nodes of low in-degree; tabu search
+(:mod:`robustness.decision.bounds.tabu`) from these cuts, from random halves and from breadth-first balls.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from robustness.decision.algorithms import Pair
+from robustness.decision.bounds.cuts import at_once, half_split
+from robustness.digraph import Digraph
+
+if TYPE_CHECKING:
+    from robustness.decision.bounds.linear_time import Adjacency
+
+__all__ = ["best_upper_bound", "fewest_exempt", "find_violation"]
+
+#: Up to this many nodes the compiled kernels, and with them numba, are not loaded: exact search is instant there.
+TINY = 12
+_CLUMP = 24
+
+
+def find_violation(
+    graph: Digraph,
+    r: int,
+    s: int = 1,
+    *,
+    seed: int = 0,
+    time_budget: float = 1.0,
+    restarts: int | None = None,
+    stop: Callable[[], bool] | None = None,
+) -> Pair | None:
+    """Look for a pair that violates (r,s)-robustness; None says nothing.
+
+    Parameters
+    ----------
+    graph : Digraph
+    r, s : int
+        r >= 1 and 1 <= s <= n.
+    seed : int
+        Of every random choice.
+    time_budget : float
+        Wall-clock seconds after which no further attempt starts.
+    restarts : int, optional
+        At most this many tabu searches of 20 n steps; n by default, so that small graphs cost little. Without
+        the time budget running out, the result depends on the seed alone.
+    stop : callable, optional
+        Asked between attempts (every few milliseconds) whether to give up.
+
+    Returns
+    -------
+    Pair or None
+        Ids of S1 and S2, checked.
+
+    Notes
+    -----
+    An attempt costs about ``O((n + m) + n d^2)`` for degree d, memory ``O(n + m)``.
+
+    >>> import networkx as nx
+    >>> find_violation(Digraph.from_networkx(nx.star_graph(3)), 2)
+    Pair(first=frozenset({1}), second=frozenset({0, 2, 3}))
+    """
+    if graph.n < 2 or r < 1:
+        return None
+    pair = at_once(graph, r)
+    if pair is not None:
+        return pair
+    if graph.n <= TINY:
+        return None
+    search = _Search.of(graph, seed, time_budget, stop)
+    found = search.pair(r, s, restarts)
+    return None if found is None else search.checked(found, r, s)
+
+
+def best_upper_bound(
+    graph: Digraph,
+    *,
+    seed: int = 0,
+    time_budget: float = 1.0,
+    restarts: int | None = None,
+    lower: int = 0,
+    stop: Callable[[], bool] | None = None,
+    on_pair: Callable[[int, Pair], None] | None = None,
+) -> tuple[int, Pair | None]:
+    """Return ``(u, pair)`` with r* <= u, where ``pair`` violates (u + 1, 1); lowered while pairs are found.
+
+    Parameters
+    ----------
+    graph, seed, time_budget, restarts, stop
+        As for :func:`find_violation`; ``time_budget`` is for the whole descent.
+    lower : int
+        A proven lower bound on r*: the descent ends there.
+    on_pair : callable, optional
+        Called with every improvement.
+
+    Notes
+    -----
+    A pair refutes every r above the largest number of in-neighbours that a node of it has outside its
+    side, so one pair often lowers the bound by several. On fewer than two nodes there is no pair and u = n.
+
+    >>> best_upper_bound(Digraph(range(3), [(0, 1), (1, 2), (2, 0)]))[0]
+    1
+    """
+    if graph.n < 2:
+        return graph.n, None
+    pair = half_split(graph)
+    upper = _most_outside(graph, pair)
+    if on_pair is not None:
+        on_pair(upper, pair)
+    search = None
+    while upper > lower:
+        found = at_once(graph, upper)
+        if found is None and graph.n > TINY:
+            search = search or _Search.of(graph, seed, time_budget, stop)
+            sets = search.pair(upper, 1, restarts)
+            found = None if sets is None else search.checked(sets, upper, 1)
+        if found is None:
+            break
+        upper, pair = _most_outside(graph, found), found
+        if on_pair is not None:
+            on_pair(upper, pair)
+    return upper, pair
+
+
+def fewest_exempt(
+    graph: Digraph,
+    r: int,
+    *,
+    seed: int = 0,
+    time_budget: float = 1.0,
+    restarts: int | None = None,
+    lower: int = 0,
+    stop: Callable[[], bool] | None = None,
+) -> tuple[int, Pair] | None:
+    """Return ``(c, pair)`` with s_max(r) <= c: a pair with ``|X_S1^r| + |X_S2^r| = c``, neither side fully reachable.
+
+    Parameters
+    ----------
+    graph, r, seed, time_budget, restarts, stop
+        As for :func:`find_violation`.
+    lower : int
+        A proven lower bound on s_max(r): the descent ends there.
+
+    Returns
+    -------
+    tuple or None
+        None when no such pair with c < n was found.
+    """
+    best: tuple[int, Pair] | None = None
+    ends = time.monotonic() + time_budget
+    s = graph.n
+    while s > lower:
+        left = ends - time.monotonic()
+        pair = find_violation(graph, r, s, seed=seed, time_budget=left, restarts=restarts, stop=stop)
+        if pair is None:
+            break
+        s = _exempt(graph, pair, r)
+        best = s, pair
+    return best
+
+
+def _outside(graph: Digraph, members: frozenset[int]) -> npt.NDArray[np.int64]:
+    """Return how many in-neighbours outside ``members`` every node has; meaningful for its members."""
+    outside = np.ones(graph.n, dtype=bool)
+    outside[np.fromiter(members, np.int64, len(members))] = False
+    heads = np.repeat(np.arange(graph.n, dtype=np.int32), graph.in_degrees)
+    return np.bincount(heads[outside[graph.in_indices]], minlength=graph.n)[~outside]
+
+
+def _most_outside(graph: Digraph, pair: Pair) -> int:
+    return max(int(_outside(graph, side).max()) for side in pair)
+
+
+def _exempt(graph: Digraph, pair: Pair, r: int) -> int:
+    return sum(int((_outside(graph, side) >= r).sum()) for side in pair)
+
+
+@dataclass(slots=True)
+class _Search:
+    """One graph's arrays, random generator and limits, for any number of questions about it."""
+
+    graph: Digraph
+    arrays: Adjacency
+    random: np.random.Generator
+    ends: float
+    stop: Callable[[], bool] | None
+    orders: list[npt.NDArray[np.int32]] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, graph: Digraph, seed: int, time_budget: float, stop: Callable[[], bool] | None) -> _Search:
+        from robustness.decision.bounds.linear_time import adjacency
+
+        return cls(graph, adjacency(graph), np.random.default_rng(seed), time.monotonic() + time_budget, stop)
+
+    def over(self) -> bool:
+        """Return whether to give up."""
+        return time.monotonic() >= self.ends or (self.stop is not None and self.stop())
+
+    def checked(self, sets: tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]], r: int, s: int) -> Pair:
+        """Return the sets as a pair, after counting again what the definition asks for."""
+        pair = Pair(*(frozenset(np.flatnonzero(side).tolist()) for side in sets))
+        exempt = [_outside(self.graph, side) >= r for side in pair]
+        if (sets[0] & sets[1]).any() or any(e.all() for e in exempt) or sum(int(e.sum()) for e in exempt) >= s:
+            from robustness.errors import InternalError
+
+            raise InternalError(f"local search returned sets that do not violate ({r},{s})-robustness: please report")
+        return pair
+
+    def pair(
+        self, r: int, s: int, restarts: int | None
+    ) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]] | None:
+        """Try everything for (r,s), cheapest first."""
+        if r == 1:
+            found = self.closed_sets()
+            if found is not None or s == 1:
+                return found
+        cuts = []
+        for order in self.node_orders():
+            if self.over():
+                return None
+            found, state = self.cut(order, r)
+            if found is not None:
+                return found
+            cuts.append(state)
+        return self.clumps(r) or self.tabu(r, s, self.graph.n if restarts is None else restarts, cuts)
+
+    def closed_sets(self) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]] | None:
+        """Return two disjoint sets that hear nobody outside, or None when there are none: r = 1, exactly."""
+        from robustness.decision.bounds.reaching import two_closed_sets
+
+        return two_closed_sets(self.arrays)
+
+    def node_orders(self) -> Iterator[npt.NDArray[np.int32]]:
+        """Yield label order, breadth-first order from a far node, and the order of a smooth function on the nodes."""
+        from robustness.decision.bounds.linear_time import breadth_first, smooth
+
+        arrays, n = self.arrays, self.graph.n
+        if not self.orders:
+            self.orders.append(np.arange(n, dtype=np.int32))
+        yield self.orders[0]
+        if len(self.orders) < 2:
+            order, size = np.empty(n, np.int32), 0
+            for start in (int(self.random.integers(n)), -1):
+                seen, size = np.zeros(n, np.bool_), 0
+                for node in (start if start >= 0 else int(order[-1]), *range(n)):
+                    size = breadth_first(*arrays[2:], node, order, seen, size)
+                    if size == n:
+                        break
+            self.orders.append(order)
+        yield self.orders[1]
+        if len(self.orders) < 3:
+            values = self.random.standard_normal(n)
+            smooth(*arrays, values, max(5, min(100, 100_000_000 // (len(arrays.in_indices) + n))))
+            self.orders.append(np.argsort(values, kind="stable").astype(np.int32))
+        yield self.orders[2]
+
+    def cut(
+        self, order: npt.NDArray[np.int32], r: int
+    ) -> tuple[tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]] | None, npt.NDArray[np.int8]]:
+        """Cut ``order`` where few nodes are exposed and peel both sides; return a pair or None, and the middle cut."""
+        from robustness.decision.bounds.linear_time import both_cores, sweep
+
+        n = self.graph.n
+        first, second = np.empty(n, np.bool_), np.empty(n, np.bool_)
+        cuts = np.ones(min(8, n - 1), np.int64)
+        sweep(*self.arrays, order, r, cuts)
+        state = np.ones(n, np.int8)
+        for length in cuts.tolist():
+            state[:] = 1
+            state[order[:length]] = 0
+            if both_cores(*self.arrays, state, r, first, second):
+                return (first, second), state
+        state[:] = 1
+        state[order[: int(cuts[len(cuts) // 2])]] = 0
+        return None, state
+
+    def clumps(self, r: int) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]] | None:
+        """Look for a small non-r-reachable set around nodes of low in-degree."""
+        from robustness.decision.bounds.linear_time import clump, core
+
+        n = self.graph.n
+        anchors = np.argsort(self.arrays.in_indptr[1:] - self.arrays.in_indptr[:-1], kind="stable").astype(np.int32)
+        members = np.empty(n, np.int32)
+        done = 0
+        while done < n and not self.over():
+            tried, size = clump(*self.arrays, anchors[done : done + 2000], min(_CLUMP, n - 1), r, members)
+            done += tried
+            if size:
+                first = np.zeros(n, np.bool_)
+                first[members[:size]] = True
+                second = ~first
+                if core(*self.arrays, second, r):
+                    return first, second
+        return None
+
+    def tabu(
+        self, r: int, s: int, restarts: int, cuts: list[npt.NDArray[np.int8]]
+    ) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]] | None:
+        """Run tabu searches from the cuts, random halves and balls, each of 20 n steps."""
+        from robustness.decision.bounds.tabu import tabu
+
+        n = self.graph.n
+        first, second = np.empty(n, np.bool_), np.empty(n, np.bool_)
+        price = _prices(int(self.graph.in_degrees.max()), r, s)
+        # The stop is asked for every twentieth of a second or so: a step costs about this many nanoseconds.
+        degree = self.graph.arc_count // n + 1
+        steps = max(100, min(20 * n, 50_000_000 // (50 + 20 * degree + degree * degree // 5)))
+        for attempt in range(restarts):
+            kind = np.zeros(n, np.int8)
+            state = cuts[attempt] if attempt < len(cuts) and s == 1 else self.start(attempt, kind, r, s)
+            least = max(1, int(n * (0.4, 0.2, 0.05)[attempt % 3])) if s == 1 else 1
+            least = min(least, int((state == 0).sum()), int((state == 1).sum()))
+            fee = (2, 2, 3, 1)[attempt % 4] if s == 1 else (2, 0)[attempt % 2]
+            for _ in range(0, 20 * n, steps):
+                if self.over():
+                    return None
+                seed = int(self.random.integers(2**31))
+                if tabu(*self.arrays, state, kind, price, r, s, fee, least, steps, 3, seed, first, second):
+                    return first, second
+        return None
+
+    def start(self, attempt: int, kind: npt.NDArray[np.int8], r: int, s: int) -> npt.NDArray[np.int8]:
+        """Return a random half split, or a ball against the rest; for s > 1 with one anchor per side."""
+        n = self.graph.n
+        if attempt % 3 == 2:
+            return self.ball() if s == 1 else self.two_hearths(kind, r)
+        state = np.zeros(n, np.int8)
+        state[self.random.permutation(n)[: n // 2]] = 1
+        if s > 1:
+            for wanted in (0, 1):
+                kind[self.random.choice(np.flatnonzero(state == wanted))] = 1
+        return state
+
+    def ball(self) -> npt.NDArray[np.int8]:
+        """Return a breadth-first ball of random size around a random node against the rest."""
+        from robustness.decision.bounds.linear_time import breadth_first
+
+        n = self.graph.n
+        order, seen = np.empty(n, np.int32), np.zeros(n, np.bool_)
+        size = breadth_first(*self.arrays[:2], int(self.random.integers(n)), order, seen, 0)
+        state = np.ones(n, np.int8)
+        state[order[: min(size, n - 1, 1 + int(self.random.integers(max(1, n // 2))))]] = 0
+        return state
+
+    def two_hearths(self, kind: npt.NDArray[np.int8], r: int) -> npt.NDArray[np.int8]:
+        """Return two random anchors, each with as many random in-neighbours on its side as keep it from X."""
+        state = np.full(self.graph.n, 2, np.int8)
+        anchors = self.random.choice(self.graph.n, 2, replace=False)
+        state[anchors], kind[anchors] = (0, 1), 1
+        for wanted, anchor in enumerate(anchors.tolist()):
+            heard = self.random.permutation(self.graph.in_neighbours(anchor))
+            state[heard[state[heard] == 2][: max(0, len(heard) - r + 1)]] = wanted
+        return state
+
+
+def _prices(largest_degree: int, r: int, s: int) -> npt.NDArray[np.int64]:
+    """Return what having ``x - 1`` in-neighbours outside costs a plain node (row 0) and an anchor (row 1)."""
+    excess = np.maximum(np.arange(-1, largest_degree + 2) - (r - 1), 0)
+    if s == 1:
+        return np.stack([excess, 4 * excess])
+    concave = np.array([0, 3, 5, 6])
+    return np.stack([concave[np.minimum(excess, 3)], 6 * excess])

@@ -1,0 +1,263 @@
+"""THE front: every question about (r,s)-robustness of one graph comes through here.
+
+Inputs are validated once, corner cases and cheap bounds are settled once, an algorithm of the registry is
+chosen and recorded, and every violating pair is re-checked against the definition before NOT_ROBUST is said.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from robustness.decision.algorithms import ALGORITHMS, Answer, Limits, Pair, Progress
+from robustness.decision.determination import determine, profile
+from robustness.decision.ladder import decide, witness_of
+from robustness.definitions import largest_conceivable_r, require_r_and_s
+from robustness.digraph import Digraph, GraphLike, as_digraph
+from robustness.errors import InvalidParameter
+from robustness.results import Bound, Bounds, RobustnessResult, Verdict
+
+__all__ = [
+    "check_rs_robustness",
+    "determine_robustness",
+    "is_r_robust",
+    "is_rs_robust",
+    "limits_of",
+    "robustness_profile",
+]
+
+def is_r_robust(G: GraphLike, r: int, **options: Any) -> bool:
+    """Return whether G is r-robust, that is (r,1)-robust.
+
+    Takes the options of :func:`check_rs_robustness`; raises :class:`Undecided` when a limit stopped it.
+
+    >>> import networkx as nx
+    >>> is_r_robust(nx.complete_graph(5), 3)
+    True
+    """
+    return check_rs_robustness(G, r, 1, **options).decided()
+
+
+def is_rs_robust(G: GraphLike, r: int, s: int, **options: Any) -> bool:
+    """Return whether G is (r,s)-robust.
+
+    Takes the options of :func:`check_rs_robustness`; raises :class:`Undecided` when a limit stopped it.
+
+    >>> import networkx as nx
+    >>> is_rs_robust(nx.wheel_graph(5), 2, 2), is_rs_robust(nx.wheel_graph(5), 3, 1)
+    (True, False)
+    """
+    return check_rs_robustness(G, r, s, **options).decided()
+
+
+def check_rs_robustness(
+    G: GraphLike,
+    r: int,
+    s: int = 1,
+    *,
+    algorithm: str = "auto",
+    time_limit: float | None = None,
+    jobs: int = 1,
+    seed: int = 0,
+    progress: Callable[[Progress], None] | None = None,
+    **options: Any,
+) -> RobustnessResult:
+    """Decide whether G is (r,s)-robust.
+
+    Definition: for every pair of nonempty disjoint node sets S1, S2 at least one holds: every node of S1 has at
+    least r in-neighbours outside S1; likewise for S2; or at least s nodes of the two sets together do.
+
+    Parameters
+    ----------
+    G : networkx Graph or DiGraph, or Digraph
+        An arc ``(u, v)`` means v hears u. Never changed.
+    r : int
+        At least 0. Every graph is (0,s)-robust; none on n nodes is (r,s)-robust for r > ceil(n/2).
+    s : int
+        In 1..n.
+    algorithm : str
+        A name in ``ALGORITHMS``, or ``"auto"``: cheap bounds first, then ``transform`` on small graphs and
+        ``subset-search`` on all others. What decided is recorded in the result.
+    time_limit : float, optional
+        Wall-clock seconds; past it the verdict is UNDECIDED.
+    jobs : int
+        Threads.
+    seed : int
+        Of the heuristics; it changes the time taken and the pair found, never the verdict.
+    progress : callable, optional
+        Called now and then with a :class:`~robustness.decision.algorithms.Progress`.
+    **options
+        Passed to the algorithm; one that it does not know is an error.
+
+    Returns
+    -------
+    RobustnessResult
+        ROBUST; NOT_ROBUST with a re-checked violating pair; or UNDECIDED.
+
+    Raises
+    ------
+    InvalidGraph, InvalidParameter
+        For input the definition does not speak about.
+
+    Notes
+    -----
+    coNP-complete (Zhang, Fata, Sundaram 2015). Source of the definition: LeBlanc, Zhang, Koutsoukos, Sundaram
+    2013; Definition 1 of the source paper.
+
+    >>> import networkx as nx
+    >>> check_rs_robustness(nx.cycle_graph(6), 2).verdict
+    <Verdict.NOT_ROBUST: 'not-robust'>
+    """
+    started = time.monotonic()
+    graph = as_digraph(G)
+    require_r_and_s(graph, r, s)
+    limits = limits_of(started, time_limit, jobs, seed, progress)
+    _require_algorithm(algorithm)
+    settled = _by_convention(graph, r, s)
+    name, answer = settled if settled is not None else decide(graph, r, s, algorithm, limits, options)
+    return _result(graph, r, s, name, answer, started)
+
+
+def determine_robustness(
+    G: GraphLike,
+    *,
+    algorithm: str = "auto",
+    time_limit: float | None = None,
+    jobs: int = 1,
+    seed: int = 0,
+    progress: Callable[[Progress], None] | None = None,
+    s_time_limit: float | None = 0.1,
+    on_bounds: Callable[[Bounds], None] | None = None,
+) -> RobustnessResult:
+    """Return r*, the greatest r for which G is r-robust, and then the greatest s for which G is (r*,s)-robust.
+
+    Parameters
+    ----------
+    G, algorithm, time_limit, jobs, seed, progress
+        As for :func:`check_rs_robustness`.
+    s_time_limit : float or None
+        Seconds that the search for s may go on once r* is known; None: until s is exact.
+    on_bounds : callable, optional
+        Called with the proven :class:`~robustness.results.Bounds` on r* each time they improve.
+
+    Returns
+    -------
+    RobustnessResult
+        DETERMINED: ``r`` is r* exactly, ``s`` the greatest s that is proven, and ``s_bounds`` tells what s_max(r*) can
+        be (``s_is_exact`` when nothing else). UNDECIDED, when a limit stopped it before r* was known, with the best
+        proven r and ``bounds``. ``witness`` is a pair that violates (r* + 1, 1).
+
+    Notes
+    -----
+    The upper bound is lowered by violating pairs first, so that exact search has one r to refute.
+
+    >>> import networkx as nx
+    >>> result = determine_robustness(nx.wheel_graph(7))
+    >>> result.r, result.s
+    (2, 3)
+    """
+    started = time.monotonic()
+    graph = as_digraph(G)
+    _require_algorithm(algorithm)
+    limits = limits_of(started, time_limit, jobs, seed, progress)
+    if s_time_limit is not None:
+        _require_seconds("s_time_limit", s_time_limit)
+    found = determine(graph, algorithm, limits, s_time_limit, on_bounds)
+    return replace(found, seconds=time.monotonic() - started)
+
+
+def robustness_profile(
+    G: GraphLike,
+    *,
+    algorithm: str = "auto",
+    time_limit: float | None = None,
+    jobs: int = 1,
+    seed: int = 0,
+    progress: Callable[[Progress], None] | None = None,
+) -> Mapping[int, int]:
+    """Return the robustness profile of G: ``r -> s_max(r)`` for r = 1 .. ceil(n/2).
+
+    ``s_max(r)`` is the largest s <= n for which G is (r,s)-robust, 0 when G is not even r-robust.
+
+    Parameters
+    ----------
+    G, algorithm, time_limit, jobs, seed, progress
+        As for :func:`check_rs_robustness`.
+
+    Raises
+    ------
+    Undecided
+        When a limit stopped it; a partial profile would be a guess.
+
+    >>> import networkx as nx
+    >>> dict(robustness_profile(nx.wheel_graph(5)))
+    {1: 5, 2: 5, 3: 0}
+    """
+    graph = as_digraph(G)
+    _require_algorithm(algorithm)
+    return profile(graph, algorithm, limits_of(time.monotonic(), time_limit, jobs, seed, progress))
+
+
+def limits_of(
+    started: float, time_limit: float | None, jobs: int, seed: int, progress: Callable[[Progress], None] | None
+) -> Limits:
+    """Return validated :class:`Limits`; ``started`` is a value of ``time.monotonic()``."""
+    if time_limit is not None:
+        _require_seconds("time_limit", time_limit)
+    if type(jobs) is not int or jobs < 1:
+        raise InvalidParameter(f"jobs is an integer of at least 1, not {jobs!r}")
+    return Limits(None if time_limit is None else started + time_limit, jobs, seed, progress)
+
+
+def _require_seconds(name: str, value: float) -> None:
+    if not (math.isfinite(value) and value > 0):
+        raise InvalidParameter(f"{name} is a positive, finite number of seconds, not {value!r}")
+
+
+def _require_algorithm(name: str) -> None:
+    if name != "auto" and name not in ALGORITHMS:
+        raise InvalidParameter(f"algorithm is 'auto' or one of {', '.join(ALGORITHMS)}, not {name!r}")
+
+
+def _by_convention(graph: Digraph, r: int, s: int) -> tuple[str, Answer] | None:
+    """Settle the corners that need no search: r = 0, r > ceil(n/2), fewer than two nodes."""
+    if r == 0:
+        return "definition", Answer(Verdict.ROBUST, stats={"rule": "every graph is (0,s)-robust: X_S^0 = S"})
+    if r > largest_conceivable_r(graph.n):
+        # In a balanced split no node has more than ceil(n/2) in-neighbours on the other side.
+        half = graph.n // 2
+        pair = Pair(frozenset(range(half)), frozenset(range(half, graph.n))) if graph.n >= 2 else None
+        return "definition", Answer(Verdict.NOT_ROBUST, pair, {"rule": "r* <= ceil(n/2)"})
+    if graph.n < 2:
+        return "definition", Answer(Verdict.ROBUST, stats={"rule": "one node is (1,1)-robust by convention"})
+    return None
+
+
+def _result(graph: Digraph, r: int, s: int, name: str, answer: Answer, started: float) -> RobustnessResult:
+    return RobustnessResult(
+        verdict=answer.verdict,
+        r=r,
+        s=s,
+        witness=witness_of(graph, answer.pair),
+        bounds=_implied_bounds(graph, r, s, answer),
+        algorithm=name,
+        stats=answer.stats,
+        seconds=time.monotonic() - started,
+    )
+
+
+def _implied_bounds(graph: Digraph, r: int, s: int, answer: Answer) -> Bounds:
+    """Return what one verdict says about r*: (r,s)-robust gives r* >= r, a violation of (r,1) gives r* <= r - 1."""
+    lower, upper = Bound(0, "every graph is 0-robust"), Bound(largest_conceivable_r(graph.n), "r* <= ceil(n/2)")
+    if answer.verdict is Verdict.ROBUST and r > 0:
+        lower = Bound(r, f"({r},{s})-robust")
+    if answer.verdict is Verdict.NOT_ROBUST and r <= upper.value:
+        # A pair that violates (r,s) with s > 1 violates (r+s-1, 1): (r+s-1)-robust implies (r,s)-robust.
+        refuted = r + s - 1
+        if refuted - 1 < upper.value:
+            pair = witness_of(graph, answer.pair) if s == 1 else None
+            upper = Bound(refuted - 1, f"violating pair of ({r},{s})-robustness", pair)
+    return Bounds(lower, upper)

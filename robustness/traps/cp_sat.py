@@ -1,0 +1,105 @@
+r"""The question as a pure 0-1 programme, solved by OR-tools' CP-SAT: the independent second opinion.
+
+For every node i and side k: ``a_ik``, i is a normal node of side k; ``m_ik``, i is malicious and inside side k. With
+``k_i = max(0, d_i - f)``::
+
+    a_i1 + a_i2 + (m_i1 + m_i2, or with two faces m_i1 = m_i2) <= 1        every i
+    sum of a_ik >= 1                                                       both k
+    sum over j in N_i of (a_jk + m_jk) >= k_i a_ik                         every i, k
+    sum of m_i <= f            (total),  or for every i that is not malicious
+    sum over j in N_i of m_j <= f + (d_i - f) m_i                          (local)
+
+with ``m_i = m_i1 + m_i2``, or their common value. These are the definitions of
+:mod:`robustness.traps.question` row
+by row, and all data are small integers. What is trusted is CP-SAT's word that the programme is infeasible; a solution
+is re-checked.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping
+from typing import Any
+
+from robustness.decision.algorithms import Limits
+from robustness.digraph import Digraph
+from robustness.traps.question import Question, Sets
+
+__all__ = ["decide"]
+
+_STEP = 0.1
+
+
+def decide(graph: Digraph, question: Question, limits: Limits) -> tuple[bool | None, Sets | None, Mapping[str, Any]]:
+    """Return whether a solution exists (None past the deadline or when the solver gave up), one, and the solver's
+    status.
+    """
+    from ortools.sat.python import cp_model
+
+    if limits.expired():
+        return None, None, {"reason": "the time limit was reached"}
+    model = cp_model.CpModel()
+    normal, inside, malicious = _variables(model, graph, question)
+    for i, degree in enumerate(graph.in_degrees.tolist()):
+        heard = graph.in_neighbours(i).tolist()
+        need = max(0, degree - question.f)
+        for k in range(2):
+            model.add(sum(normal[j][k] + inside[j][k] for j in heard) >= need * normal[i][k])
+        if question.local and degree > question.f:
+            model.add(sum(malicious[j] for j in heard) <= question.f + (degree - question.f) * malicious[i])
+    if not question.local:
+        model.add(sum(malicious) <= question.f)
+    for k in range(2):
+        model.add_bool_or([sides[k] for sides in normal])
+    solver = cp_model.CpSolver()
+    status = _solve(solver, model, limits)
+    stats = {"solver_status": solver.status_name(status).lower()}
+    if status == cp_model.INFEASIBLE:
+        return False, None, stats
+    if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+        return None, None, stats | {"reason": "the solver stopped without an answer"}
+    bad = frozenset(i for i, each in enumerate(malicious) if solver.value(each))
+    S1, S2 = (
+        frozenset(
+            i for i in range(graph.n)
+            if solver.value(normal[i][k]) or (not question.two_faces and solver.value(inside[i][k]))
+        )
+        for k in range(2)
+    )  # fmt: skip
+    return True, Sets(bad, S1, S2), stats
+
+
+def _variables(model: Any, graph: Digraph, question: Question) -> tuple[list[Any], list[Any], list[Any]]:
+    """Return a_ik, m_ik and m_i, with at most one role for every node and the sides' symmetry broken at one node."""
+    normal = [[model.new_bool_var("") for _ in range(2)] for _ in range(graph.n)]
+    if question.two_faces:
+        malicious: list[Any] = [model.new_bool_var("") for _ in range(graph.n)]
+        inside = [[each, each] for each in malicious]
+    else:
+        inside = [[model.new_bool_var("") for _ in range(2)] for _ in range(graph.n)]
+        malicious = [one + two for one, two in inside]
+    for roles, each in zip(normal, inside, strict=True):
+        model.add_at_most_one([*roles, each[0]] if question.two_faces else [*roles, *each])
+    if graph.n:
+        model.add_implication(normal[int(graph.in_degrees.argmax())][1], False)
+    return normal, inside, malicious
+
+
+def _solve(solver: Any, model: Any, limits: Limits) -> Any:
+    """Run CP-SAT in a thread that the caller waits for in short steps, so that Ctrl-C is served and stops it."""
+    solver.parameters.num_workers = limits.jobs
+    solver.parameters.random_seed = limits.seed % (1 << 31)
+    solver.parameters.catch_sigint_signal = False
+    if limits.deadline is not None:
+        solver.parameters.max_time_in_seconds = limits.seconds_left()
+    outcome: list[Any] = []
+    worker = threading.Thread(target=lambda: outcome.append(solver.solve(model)), daemon=True)
+    worker.start()
+    try:
+        while worker.is_alive():
+            worker.join(_STEP)
+    except BaseException:
+        solver.stop_search()
+        worker.join()
+        raise
+    return outcome[0]

@@ -1,0 +1,29 @@
+"""The definitions tried out: the slow truth that every other search is compared with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import product
+
+from robustness.decision.algorithms import Limits
+from robustness.digraph import Digraph
+from robustness.traps.question import Question, Sets, solves
+
+__all__ = ["decide"]
+
+
+def decide(graph: Digraph, question: Question, limits: Limits) -> tuple[bool | None, Sets | None]:
+    """Return whether a solution exists (None past the deadline), and one: all ``4^n`` (``5^n``) roles are tried."""
+    for number, sets in enumerate(_role_assignments(graph.n, question.two_faces)):
+        if number % 256 == 0 and limits.expired():
+            return None, None
+        if solves(graph, question, sets):
+            return True, sets
+    return False, None
+
+
+def _role_assignments(n: int, two_faces: bool) -> Iterator[Sets]:
+    """Yield every way to give each node a role: nowhere, S1, S2, or malicious (with one face: inside S1 or S2)."""
+    for roles in product("-12M" if two_faces else "-12ab", repeat=n):
+        held = {role: frozenset(i for i in range(n) if roles[i] == role) for role in "12Mab"}
+        yield Sets(held["M"] | held["a"] | held["b"], held["1"] | held["a"], held["2"] | held["b"])
