@@ -2,9 +2,9 @@
 
 By the theorem of :mod:`robustness.decision.bounds.growth` a graph is (r,s)-robust when some node set, the *seed*,
 induces an (r,s)-robust graph and the others can be put in an *order* in which each hears at least r + s - 1 nodes of
-the seed or before it in the order. Between one window and the next a few arcs come and go, but a seed of well-
-connected nodes stays a seed. Here the order is found anew on the marked arcs of the universe, and with it a small set
-of arcs that proves it: as long as they stay, nothing has to be looked at again.
+the seed or before it in the order. Between one window and the next a few arcs come and go, but a seed of
+well-connected nodes stays a seed. Here the order is found anew on the marked arcs of the universe, and with it a small
+set of arcs that proves it: as long as they stay, nothing has to be looked at again.
 """
 
 from __future__ import annotations

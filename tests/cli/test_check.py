@@ -11,7 +11,7 @@ from click.testing import CliRunner, Result
 
 import robustness as rb
 from cli.main import robustness
-from robustness.decision.algorithms import exhaustive
+from robustness.decision.algorithms import Limits, exhaustive
 from robustness.definitions import is_violation
 from robustness.files import encode_topology, read_topology, write_topology
 
@@ -104,7 +104,7 @@ class TestJson:
 
     def test_the_profile_is_that_of_the_definition(self) -> None:
         graph = nx.gnp_random_graph(6, 0.6, seed=3, directed=True)
-        plain, limits = rb.Digraph.from_networkx(graph), rb.algorithms.Limits()
+        plain, limits = rb.Digraph.from_networkx(graph), Limits()
         expected = {}
         for r in (1, 2, 3):
             robust = [s for s in range(1, 7) if exhaustive.decide(plain, r, s, limits).verdict is rb.Verdict.ROBUST]

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import robustness as rb
+from robustness.decision.algorithms import Limits
 from robustness.decision.algorithms.exhaustive import decide as exhaustive
 from robustness.time_varying import TimeVaryingGraph, UnionVerdict, check_joint_robustness
 from robustness.time_varying.deciding import RULES, UnionDecider
@@ -113,7 +114,7 @@ def assert_growth(graph: rb.Digraph, union: UnionVerdict, r: int, s: int) -> Non
     by_degree = min(degrees) >= len(seed) // 2 + r - 1
     assert by_degree or union.growth.seed_proof == "exhaustive"
     induced = rb.Digraph(seed, [(u, v) for u, v in graph.arcs() if u in seed and v in seed])
-    assert exhaustive(induced, r, s, rb.algorithms.Limits()).verdict is rb.Verdict.ROBUST
+    assert exhaustive(induced, r, s, Limits()).verdict is rb.Verdict.ROBUST
     assert sorted([*seed, *order]) == list(range(graph.n))
     for k, node in enumerate(order):
         assert len({*seed, *order[:k]} & set(graph.in_neighbours(node).tolist())) >= r + s - 1
