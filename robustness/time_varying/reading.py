@@ -20,7 +20,6 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import sys
 from collections.abc import Callable, Hashable, Iterator
 from pathlib import Path
@@ -30,6 +29,7 @@ from robustness.digraph import Digraph
 from robustness.errors import InvalidGraph, InvalidParameter, UnreadableTopology
 from robustness.files import FORMATS, SIZE_LIMIT, decode_topology, read_topology
 from robustness.files.text import decode_utf8, one_line
+from robustness.natural_order import natural_key
 from robustness.time_varying.contacts import bin_length, decode_contacts
 from robustness.time_varying.sequence import TimeVaryingGraph
 
@@ -121,7 +121,7 @@ def _read(source: str, name: str, stdin: BinaryIO | None) -> bytes:
 def _from_directory(path: Path, period: int | None) -> TimeVaryingGraph:
     """Return the sequence of the files of a directory; hidden ones are skipped, others must be topologies."""
     try:
-        files = sorted((entry for entry in path.iterdir() if not entry.name.startswith(".")), key=_natural)
+        files = sorted((entry for entry in path.iterdir() if not entry.name.startswith(".")), key=lambda entry: natural_key(entry.name))
     except OSError as problem:
         raise UnreadableTopology(f"cannot be read: {problem.strerror}") from None
     if not files:
@@ -133,12 +133,6 @@ def _from_directory(path: Path, period: int | None) -> TimeVaryingGraph:
             )
     graphs = (read_topology(file) for file in files)
     return TimeVaryingGraph(graphs, period, step_name=lambda k: f"step {k} ({files[k].name})")
-
-
-def _natural(path: Path) -> tuple[tuple[int | str, ...], str]:
-    """Return the sort key of a name: text and numbers by turns, numbers by value."""
-    parts = re.split(r"([0-9]+)", path.name)
-    return tuple(int(part) if i % 2 else part for i, part in enumerate(parts)), path.name
 
 
 def _from_json(data: bytes, period: int | None) -> TimeVaryingGraph:

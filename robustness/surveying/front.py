@@ -1,0 +1,244 @@
+"""The front: ``survey``, one row for each of many networks."""
+
+from __future__ import annotations
+
+import html
+import os
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from robustness.digraph import Digraph, GraphLike, as_digraph
+from robustness.errors import InvalidParameter, MissingExtra, RobustnessError
+from robustness.files import read_topology
+from robustness.surveying import tables
+from robustness.surveying.row import STANDINGS, Gate, Question, Row, measure, unreadable
+from robustness.surveying.sources import expand
+from robustness.surveying.state import Journal, key_of
+from robustness.threat_models import THREAT_MODELS
+from robustness.threat_models.models import threat_model_named
+
+__all__ = ["Survey", "survey"]
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """The rows of a survey, in the order of its networks.
+
+    Attributes
+    ----------
+    rows : tuple of Row
+    models : tuple of str
+        The threat models that were looked at.
+    notes : tuple of str
+        What was passed over on the way, one line each.
+    missing : tuple of str
+        Networks that the time limit for the whole, or Ctrl-C, left unasked. Nothing is claimed about them.
+    """
+
+    rows: tuple[Row, ...]
+    models: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    missing: tuple[str, ...] = field(default=())
+
+    def __iter__(self) -> Iterator[Row]:
+        return iter(self.rows)
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    @property
+    def worst(self) -> str:
+        """The worst of all gates: ``"passed"``, ``"undecided"``, ``"refuted"`` or ``"error"``.
+
+        A network that could not be read counts as an error, and one that was not reached as undecided, gates or none.
+        """
+        standings = [row.gate or ("error" if row.error else "passed") for row in self.rows]
+        standings += ["undecided"] * len(self.missing)
+        return max(standings, key=STANDINGS.index, default="passed")
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return everything as JSON-ready values."""
+        return {
+            "rows": [row.as_dict() for row in self.rows],
+            "models": list(self.models),
+            "notes": list(self.notes),
+            "missing": list(self.missing),
+            "worst": self.worst,
+        }
+
+    def to_frame(self) -> Any:
+        """Return the rows as a pandas DataFrame, one column for each fact.
+
+        Raises
+        ------
+        MissingExtra
+            When pandas is not installed.
+        """
+        try:
+            import pandas as pd
+        except ImportError:
+            raise MissingExtra("to_frame needs the package pandas: install it with: pip install pandas") from None
+        return pd.DataFrame([tables.flat(row, self.models) for row in self.rows])
+
+    def __str__(self) -> str:
+        return tables.text(self.rows, self.models)
+
+    def _repr_html_(self) -> str:
+        head, *body = tables.cells(self.rows, self.models)
+        rows = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in body)
+        names = "".join(f"<th>{html.escape(cell)}</th>" for cell in head)
+        return f"<table><thead><tr>{names}</tr></thead><tbody>{rows}</tbody></table>"
+
+
+def survey(
+    graphs: Iterable[Any] | Mapping[str, GraphLike],
+    *,
+    models: Iterable[str] | None = None,
+    gate: Gate | None = None,
+    time_limit: float | None = None,
+    total_time_limit: float | None = None,
+    jobs: int = 1,
+    seed: int = 0,
+    state: str | os.PathLike[str] | None = None,
+    certificates: str | os.PathLike[str] | None = None,
+    on_row: Callable[[Row, int, int], None] | None = None,
+) -> Survey:
+    """Return one row of facts for each of many networks: its size, r*, s, what f it survives, and what a gate says.
+
+    Parameters
+    ----------
+    graphs : iterable or mapping
+        Graphs as everywhere; paths, folders, patterns and ``topohub:GROUP/*`` as text, which
+        :func:`robustness.surveying.sources.expand` explains; ``(name, graph)`` pairs; or a mapping from name to graph.
+    models : iterable of str, optional
+        Threat models to look at, names in ``THREAT_MODELS``; all unless given.
+    gate : Gate, optional
+        What every network has to fulfil.
+    time_limit, total_time_limit : float, optional
+        Wall-clock seconds for one network and for all. What they leave undecided says so.
+    jobs : int
+        Networks at once, one thread each.
+    seed : int
+        Of the heuristics; it never changes a verdict.
+    state : path, optional
+        A journal. Rows that it holds are not computed again, so a survey that was killed goes on where it was.
+    certificates : path, optional
+        A folder for a certificate of r* of every network and the canonical graph that it is bound to.
+    on_row : callable, optional
+        Called with each finished row, how many are finished, and how many there are.
+
+    Returns
+    -------
+    Survey
+        A network that cannot be read has a row that says why; the others are not held up.
+
+    Raises
+    ------
+    InvalidParameter
+        For an unknown model, and numbers out of range.
+    UnreadableTopology
+        For a folder or pattern that holds no network, and a damaged journal.
+
+    >>> import networkx as nx
+    >>> rows = survey({"wheel": nx.wheel_graph(5), "complete": nx.complete_graph(7)}, models=["delayed"])
+    >>> [(row.network, row.r, row.guaranteed["delayed"]) for row in rows]
+    [('wheel', 2, 0), ('complete', 4, 2)]
+    """
+    if type(jobs) is not int or jobs < 1:
+        raise InvalidParameter(f"jobs is an integer of at least 1, not {jobs!r}")
+    names = tuple(THREAT_MODELS) if models is None else tuple(threat_model_named(name).name for name in models)
+    question = Question(names, gate or Gate(), time_limit, seed)
+    networks, notes = _named(graphs)
+    folder = None if certificates is None else Path(certificates)
+    if folder is not None:
+        folder.mkdir(parents=True, exist_ok=True)
+    with Journal(None if state is None else Path(state)) as journal:
+        rows = _run(networks, question, journal, folder, jobs, total_time_limit, on_row)
+    missing = tuple(name for (name, _), row in zip(networks, rows, strict=True) if row is None)
+    return Survey(tuple(row for row in rows if row is not None), names, notes, missing)
+
+
+def _named(graphs: Iterable[Any] | Mapping[str, GraphLike]) -> tuple[list[tuple[str, Any]], tuple[str, ...]]:
+    """Return (name, graph or None) for each network; None: the name is a source that is yet to be read."""
+    if isinstance(graphs, str | os.PathLike):
+        graphs = [graphs]
+    if isinstance(graphs, Mapping):
+        return list(graphs.items()), ()
+    networks: list[tuple[str, Any]] = []
+    notes: tuple[str, ...] = ()
+    for number, each in enumerate(graphs):
+        if isinstance(each, str | os.PathLike):
+            found = expand([each])
+            networks += [(name, None) for name in found.names]
+            notes += found.notes
+        elif isinstance(each, tuple) and len(each) == 2 and isinstance(each[0], str):
+            networks.append(each)
+        else:
+            networks.append((str(number), each))
+    return networks, notes
+
+
+def _run(
+    networks: list[tuple[str, Any]],
+    question: Question,
+    journal: Journal,
+    folder: Path | None,
+    jobs: int,
+    total: float | None,
+    on_row: Callable[[Row, int, int], None] | None,
+) -> list[Row | None]:
+    rows: list[Row | None] = [None] * len(networks)
+    ends = None if total is None else time.monotonic() + total
+    finished = 0
+    pool = ThreadPoolExecutor(jobs, thread_name_prefix="survey")
+    try:
+        waiting: dict[Future[tuple[str | None, Row]], int] = {}
+        pending = iter(enumerate(networks))
+        while True:
+            while len(waiting) < jobs and (item := next(pending, None)) is not None:
+                k, (name, graph) = item
+                left = None if ends is None else ends - time.monotonic()
+                if left is not None and left <= 0:
+                    break
+                waiting[pool.submit(_row, name, graph, _within(question, left), question, journal, folder)] = k
+            if not waiting:
+                return rows
+            for future in wait(waiting, return_when=FIRST_COMPLETED).done:
+                key, row = future.result()
+                rows[waiting.pop(future)] = row
+                finished += 1
+                if key is not None:
+                    journal.add(key, row)
+                if on_row is not None:
+                    on_row(row, finished, len(networks))
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _within(question: Question, left: float | None) -> Question:
+    """Return the question with the time limit that the whole survey leaves for one network."""
+    if left is None:
+        return question
+    return replace(question, time_limit=left if question.time_limit is None else min(left, question.time_limit))
+
+
+def _row(
+    name: str, graph: Any, question: Question, asked: Question, journal: Journal, folder: Path | None
+) -> tuple[str | None, Row]:
+    """Return the row of one network, and its key in the journal when it is to be remembered."""
+    try:
+        read: Digraph = read_topology(name) if graph is None else as_digraph(graph)
+    except (RobustnessError, OSError) as problem:
+        return None, unreadable(name, problem, question.gate)
+    key = key_of(name, read, asked)
+    known = journal.get(key)
+    if known is not None and (folder is None or not known.certificate or Path(known.certificate).is_file()):
+        return None, known
+    row = measure(name, read, question, folder)
+    # A row that the limit for the whole cut short is not what a run with more time would say.
+    was_cut = question.time_limit != asked.time_limit and not row.is_decided
+    return None if row.error or was_cut else key, row

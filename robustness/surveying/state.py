@@ -1,0 +1,108 @@
+"""The journal of a survey: finished rows, one checksummed line each, so that a killed run loses only the row in hand.
+
+A line is 16 hexadecimal digits of the SHA-256 of what follows, a blank, and a JSON object ``{"key": ..., "row": ...}``.
+The key is the SHA-256 of the network's name, its canonical graph and the question, so a changed file, another gate or
+another limit is asked anew. A last line that was cut off is what a kill leaves behind, and is dropped; a damaged line
+before it is not, and is refused.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from pathlib import Path
+from types import TracebackType
+from typing import IO, Self
+
+from robustness.digraph import Digraph
+from robustness.errors import UnreadableTopology
+from robustness.files.text import one_line
+from robustness.surveying.row import Question, Row
+
+__all__ = ["Journal", "key_of"]
+
+
+def key_of(name: str, graph: Digraph, question: Question) -> str:
+    """Return what a row answers, as one digest."""
+    asked = json.dumps([name, graph.sha256, question.as_dict()], sort_keys=True)
+    return hashlib.sha256(asked.encode()).hexdigest()
+
+
+class Journal:
+    """Rows by key, read from a file when it is opened and appended to it as they are finished.
+
+    Parameters
+    ----------
+    path : path or None
+        None: nothing is remembered.
+
+    Raises
+    ------
+    UnreadableTopology
+        When the file is no journal, or a line before the last is damaged.
+    OSError
+        When it cannot be read or written.
+    """
+
+    def __init__(self, path: Path | None) -> None:
+        self._rows: dict[str, Row] = {}
+        self._stream: IO[bytes] | None = None
+        if path is None:
+            return
+        whole = self._read(path)
+        self._stream = open(path, "ab")  # noqa: SIM115 - closed by __exit__
+        if whole < self._stream.tell():
+            self._stream.truncate(whole)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, tb: TracebackType | None) -> None:
+        if self._stream is not None:
+            self._stream.close()
+
+    def get(self, key: str) -> Row | None:
+        """Return the row of an earlier run."""
+        return self._rows.get(key)
+
+    def add(self, key: str, row: Row) -> None:
+        """Remember a finished row; it is on the disk when this returns."""
+        self._rows[key] = row
+        if self._stream is None:
+            return
+        text = json.dumps({"key": key, "row": row.as_dict()}, allow_nan=False).encode()
+        self._stream.write(_checksum(text) + b" " + text + b"\n")
+        self._stream.flush()
+        os.fsync(self._stream.fileno())
+
+    def _read(self, path: Path) -> int:
+        """Take over what ``path`` holds; return the length of its whole lines."""
+        try:
+            data = path.read_bytes()
+        except FileNotFoundError:
+            return 0
+        whole = 0
+        lines = data.splitlines(keepends=True)
+        for number, line in enumerate(lines, start=1):
+            try:
+                if not line.endswith(b"\n"):
+                    raise ValueError("cut off")
+                checksum, _, text = line[:-1].partition(b" ")
+                if checksum != _checksum(text):
+                    raise ValueError("its checksum is wrong")
+                content = json.loads(text)
+                self._rows[content["key"]] = Row.of_dict(content["row"])
+            except (ValueError, KeyError, TypeError) as problem:
+                if number == len(lines) and number > 1:
+                    break
+                raise UnreadableTopology(
+                    f"{one_line(str(path))}, line {number}: not a line of a survey's journal ({problem}): "
+                    "name a new file, or remove the damaged line"
+                ) from None
+            whole += len(line)
+        return whole
+
+
+def _checksum(text: bytes) -> bytes:
+    return hashlib.sha256(text).hexdigest()[:16].encode()

@@ -1,0 +1,150 @@
+"""The rows of a survey as text, CSV, JSON Lines, JUnit XML and Markdown. Names are data: escaped in each."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
+from xml.etree import ElementTree
+
+from robustness.surveying.row import Row
+
+__all__ = ["TABLES", "cells", "flat", "text"]
+
+
+def flat(row: Row, models: Sequence[str]) -> dict[str, Any]:
+    """Return a row as one value for each column, the same columns for every row of a survey."""
+    content = row.as_dict()
+    guaranteed, refuted = content.pop("guaranteed"), content.pop("refuted")
+    content.pop("weakest")
+    tail = {name: content.pop(name) for name in ("gate", "sha256", "certificate", "seconds", "error")}
+    for model in models:
+        content[f"{model} guaranteed"] = guaranteed.get(model)
+        content[f"{model} refuted"] = refuted.get(model)
+    return content | tail
+
+
+def cells(rows: Sequence[Row], models: Sequence[str]) -> list[list[str]]:
+    """Return the table that a person reads: a head, then a line for each row.
+
+    An interval stands where a limit left one: ``2..4``. Under a model stands the largest f that is guaranteed, and
+    ``0..2`` when f = 3 is the smallest that is refuted and nothing is known in between.
+    """
+    has_gate = any(row.gate for row in rows)
+    head = ["network", "nodes", "arcs", "r*", "s", *models, *(["gate"] if has_gate else []), "seconds", "note"]
+    return [head, *(_line(row, models, has_gate) for row in rows)]
+
+
+def _line(row: Row, models: Sequence[str], has_gate: bool) -> list[str]:
+    gate = [row.gate] if has_gate else []
+    if row.error:
+        return [row.network, *[""] * (4 + len(models)), *gate, "", row.error]
+    known = [_interval(row.r, row.r_at_most), _interval(row.s, row.s_at_most)]
+    promised = [_interval(row.guaranteed.get(each), _before(row.refuted.get(each))) for each in models]
+    note = "directed" if row.directed else ""
+    return [row.network, str(row.nodes), str(row.arcs), *known, *promised, *gate, f"{row.seconds:.2f}", note]
+
+
+def _before(refuted: int | None) -> int | None:
+    return None if refuted is None else refuted - 1
+
+
+def _interval(low: int | None, high: int | None) -> str:
+    if low is None:
+        return "?"
+    if high is None:
+        return f">={low}"
+    return str(low) if low == high else f"{low}..{high}"
+
+
+def text(rows: Sequence[Row], models: Sequence[str]) -> str:
+    """Return a table for a terminal: names to the left, numbers to the right."""
+    table = [[_printable(cell) for cell in line] for line in cells(rows, models)]
+    widths = [max(len(line[k]) for line in table) for k in range(len(table[0]))]
+    is_word = [name in ("network", "gate", "note") for name in table[0]]
+    lines = (
+        "  ".join(
+            cell.ljust(width) if word else cell.rjust(width)
+            for cell, width, word in zip(line, widths, is_word, strict=True)
+        ).rstrip()
+        for line in table
+    )
+    return "\n".join(lines)
+
+
+def _printable(cell: str) -> str:
+    """Return text that cannot steer a terminal: what is not printable stands as its escape."""
+    return "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in cell)
+
+
+def _csv(rows: Sequence[Row], models: Sequence[str]) -> str:
+    target = io.StringIO()
+    columns = list(flat(Row(""), models))
+    writer = csv.DictWriter(target, columns, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(flat(row, models) for row in rows)
+    return target.getvalue()
+
+
+def _json_lines(rows: Sequence[Row], _: Sequence[str]) -> str:
+    schema = {"schema": "robustness/survey-row/1"}
+    return "".join(json.dumps(schema | row.as_dict(), allow_nan=False) + "\n" for row in rows)
+
+
+def _junit(rows: Sequence[Row], models: Sequence[str]) -> str:
+    """Return one test case for each network: a refuted gate is a failure, an unreadable file an error.
+
+    A gate that is undecided is a failure too, since nobody may deploy on it; its type tells it apart.
+    """
+    counts = {
+        "tests": len(rows),
+        "failures": sum(row.gate in ("refuted", "undecided") for row in rows),
+        "errors": sum(bool(row.error) for row in rows),
+    }
+    suite = ElementTree.Element("testsuite", name="robustness survey", **{k: str(v) for k, v in counts.items()})
+    head = cells([], models)[0]
+    for row in rows:
+        case = ElementTree.SubElement(
+            suite, "testcase", classname="robustness", name=_xml(row.network), time=f"{row.seconds:.6f}"
+        )
+        facts = ", ".join(
+            f"{name} {cell}" for name, cell in zip(head[1:], _line(row, models, False)[1:], strict=True) if cell
+        )
+        if row.error:
+            ElementTree.SubElement(case, "error", message=_xml(row.error))
+        elif row.gate in ("refuted", "undecided"):
+            ElementTree.SubElement(case, "failure", type=row.gate, message=_xml(f"{row.gate}: {facts}"))
+        ElementTree.SubElement(case, "system-out").text = _xml(facts)
+    ElementTree.indent(suite)
+    return ElementTree.tostring(suite, encoding="unicode", xml_declaration=False) + "\n"
+
+
+def _xml(words: str) -> str:
+    """Return ``words`` without the letters that XML 1.0 cannot hold; each stands as ``?``."""
+    return re.sub("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]", "?", words)
+
+
+def _markdown(rows: Sequence[Row], models: Sequence[str]) -> str:
+    head, *body = cells(rows, models)
+    lines = [head, ["---"] * len(head), *body]
+    return "".join("| " + " | ".join(map(_markdown_cell, line)) + " |\n" for line in lines)
+
+
+def _markdown_cell(cell: str) -> str:
+    if cell == "---":
+        return cell
+    return re.sub(r"([\\`*_{}\[\]<>()#+!|~$&-])", r"\\\1", _printable(cell))
+
+
+def _text_lines(rows: Sequence[Row], models: Sequence[str]) -> str:
+    return text(rows, models) + "\n"
+
+
+#: How rows are written, by name; each takes the rows and the models and returns the whole text.
+TABLES: Mapping[str, Callable[[Sequence[Row], Sequence[str]], str]] = MappingProxyType(
+    {"table": _text_lines, "csv": _csv, "jsonl": _json_lines, "junit": _junit, "markdown": _markdown}
+)
