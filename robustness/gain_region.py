@@ -7,10 +7,10 @@ With T the sampling period, sigma a bound on the sum of the weights a vehicle ke
 
 Inside it there is a ``c > 0`` for which the next ``p`` and the next ``z = p + c q`` of a vehicle are convex
 combinations of its present p, its present z and the positions it keeps; agreement then follows on every network without
-a trap, for all delays and update gaps. Outside it, and on the line s = 1, delays alone drive (2f+1)-robust networks apart, with
-nobody lying. In words: a vehicle tied to a standing target by the greatest weight it may use does not overshoot, not
-even between samples. The interval ``1 + s/2 <= a <= 2 - s/2`` of the literature (Dibaji and Ishii 2017) lies inside,
-except for its corner s = 1.
+a trap, for all delays and update gaps. Outside it, and on the line s = 1, delays alone drive (2f+1)-robust networks
+apart, with nobody lying. In words: a vehicle tied to a standing target by the greatest weight it may use does not
+overshoot, not even between samples. The interval ``1 + s/2 <= a <= 2 - s/2`` of the literature (Dibaji and Ishii 2017)
+lies inside, except for its corner s = 1.
 """
 
 from __future__ import annotations
