@@ -265,7 +265,7 @@ class Batch:
 
     def _trial(self, p: Floats, q: Floats, sent: Floats) -> Floats:
         """Return the positions one step later if everybody updated now and heard ``sent`` at once."""
-        from robustness.simulation.kernels import advance
+        from robustness.kernels.steps import advance
 
         new_p, new_q = np.empty_like(p), np.empty_like(q)
         graph, rule, scenario = self.topology.union, self.rule, self.scenario
@@ -314,7 +314,7 @@ class Batch:
 
 def _run_in_parts(pool: ThreadPoolExecutor, bounds: list[int], arguments: tuple[Any, ...]) -> None:
     """Advance the runs between consecutive bounds, each part in its own thread; runs are independent."""
-    from robustness.simulation.kernels import advance
+    from robustness.kernels.steps import advance
 
     parts = list(pairwise(bounds))
     if len(parts) == 1:
