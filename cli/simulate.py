@@ -99,9 +99,9 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 def command(ctx: click.Context, console: Console, /, **options: Any) -> None:
     """Run resilient consensus on GRAPH under attack, and say whether it ends in agreement or split.
 
-    Exit code 0 for agreement or split, 30 when undecided at the horizon; with --expect 10 for the other outcome. An
-    experiment ends in 10 when a case differs from what the paper reports. With --certificate, 10 is a counterexample;
-    it is saved for --replay, as counterexample.json unless --save names another file.
+    Exit code 0 for agreement, split or divergence, 30 when undecided at the horizon; with --expect 10 for another one.
+    An experiment ends in 10 when a case differs from what the paper reports. With --certificate, 10 is a
+    counterexample; it is saved for --replay, as counterexample.json unless --save names another file.
     """
     if sum(options[name] is not None for name in ("source", "experiment", "replay")) != 1:
         raise click.UsageError("give one of GRAPH, --experiment and --replay.")
@@ -286,9 +286,9 @@ def _most_heard(graph: Digraph, f: int) -> list[Label]:
 
 
 def _overall(outcomes: Sequence[Outcome]) -> str:
-    """Return the verdict over several runs: one split is a split, and agreement needs all."""
+    """Return the verdict over several runs: one split is a split, one divergence is one, and agreement needs all."""
     verdicts = {outcome.verdict.value for outcome in outcomes}
-    return "split" if "split" in verdicts else "undecided" if "undecided" in verdicts else "agreement"
+    return next(verdict for verdict in ("split", "divergence", "undecided", "agreement") if verdict in verdicts)
 
 
 def _document(scenario: Scenario, starts: list[Start], outcomes: Sequence[Outcome], overall: str) -> dict[str, Any]:
@@ -316,7 +316,7 @@ def _lines(
     yield _headline(overall, len(outcomes))
     for start, outcome in zip(starts, outcomes, strict=True):
         yield f"malicious  {set_text(start.malicious, whole=whole)}, seed {start.seed}: {outcome.verdict.value}" + (
-            ", exactly" if outcome.exact else ""
+            ", exactly" if outcome.exact else "" if outcome.diverged_at is None else f" at step {outcome.diverged_at}"
         )
         yield f"spread     {outcome.initial_spread:g} at first, {outcome.spread:g} after {scenario.steps} steps" + (
             "" if outcome.since is None else f", within the tolerance since step {outcome.since}"
@@ -324,16 +324,21 @@ def _lines(
         for value, labels in outcome.groups if outcome.verdict.value != "agreement" else ():
             yield f"group      {set_text(labels, whole=whole)} at {value:g}"
         if outcome.safe is not None:
-            yield f"safety     {'kept: nobody left the initial range' if outcome.safe else 'LOST: please report'}"
+            yield f"safety     {'kept: nobody left the hull of the start' if outcome.safe else 'LOST: please report'}"
+        if outcome.rate is not None and outcome.contraction is not None:
+            least, every = outcome.contraction
+            proven = f"on a network without a trap the spread loses at least {least:.2g} of itself in {every} steps"
+            yield f"rate       {outcome.rate:.4g} a step, fitted; proven: {proven}"
     yield f"rule       {scenario.rule}, f = {scenario.f}, {scenario.model}, {scenario.adversary}"
     yield f"schedule   {scenario.schedule}"
 
 
 def _headline(overall: str, runs: int) -> str:
-    color = {"agreement": "green", "split": "red", "undecided": "yellow"}[overall]
+    color = {"agreement": "green", "split": "red", "divergence": "red", "undecided": "yellow"}[overall]
     what = {
         "agreement": "all normal vehicles came together",
         "split": "normal vehicles stayed apart",
+        "divergence": "normal vehicles left every bound",
         "undecided": "neither agreement nor a constant gap at the horizon",
     }[overall]
     return f"{click.style(overall + ':', fg=color, bold=True)} {what}" + (f", in {runs} runs" if runs > 1 else "")

@@ -1,4 +1,4 @@
-"""What a run showed: agreement, split, or neither; and whether what the theory promises was kept."""
+"""What a run showed: agreement, split, divergence, or none of them; and whether what the theory promises was kept."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from certificates.graph import Label
+from robustness.simulation.contraction import Contraction
 from robustness.simulation.dynamics import Floats
 
 __all__ = ["Outcome", "RunVerdict", "Trajectory", "convergence_rate", "groups_of", "settled_since", "verdict_of"]
@@ -22,7 +23,9 @@ class RunVerdict(enum.Enum):
     AGREEMENT = "agreement"
     #: Normal vehicles stayed apart by a gap that did not change by one bit: see :func:`verdict_of`.
     SPLIT = "split"
-    #: Neither by the horizon.
+    #: A normal vehicle left the finite numbers or grew past the scenario's factor: see ``diverged_at``.
+    DIVERGENCE = "divergence"
+    #: None of these by the horizon.
     UNDECIDED = "undecided"
 
 
@@ -51,7 +54,12 @@ class Outcome:
     ----------
     verdict : RunVerdict
     exact : bool
-        True for a split that evidence predicted and every step confirmed bit for bit: it lasts for ever.
+        True for a split that evidence predicted and every step confirmed bit for bit: it lasts for ever. (What the
+        other vehicles do makes no difference to it, even if they diverge.)
+    diverged_at : int or None
+        The step at which the run diverged, see :class:`robustness.simulation.divergence.Divergence`. Its states stay
+        as they were then (at the step before, when they were no finite numbers any more), and all numbers below are
+        about those.
     spread : float
         ``max - min`` of ``p - d`` over the normal vehicles at the horizon.
     initial_spread : float
@@ -61,8 +69,12 @@ class Outcome:
         The first step from which the spread stayed within the tolerance.
     rate : float or None
         The fitted factor by which the spread shrinks per step; None when it does not shrink to a fit.
+    contraction : Contraction or None
+        The proven shrinking to compare it with, for a network that satisfies the condition of its threat model; None
+        where the theory gives none.
     safe : bool or None
-        Whether no normal vehicle ever left the range that the theory promises; None when it promises none.
+        Whether no normal vehicle ever left the hull that the theory promises; None when it promises none. The hull is
+        that of all ``p`` and ``p + c q`` at the start, :func:`robustness.gain_region.hull_velocity_factor`.
     promise : str or None
         Why the theory promises nothing about this run, or None when its gains lie inside the theory.
     groups : tuple
@@ -74,11 +86,13 @@ class Outcome:
 
     verdict: RunVerdict
     exact: bool
+    diverged_at: int | None
     spread: float
     initial_spread: float
     speed: float
     since: int | None
     rate: float | None
+    contraction: Contraction | None
     safe: bool | None
     promise: str | None
     groups: tuple[tuple[float, tuple[Label, ...]], ...]
@@ -89,11 +103,13 @@ class Outcome:
         return {
             "outcome": self.verdict.value,
             "exact": self.exact,
+            "diverged_at": self.diverged_at,
             "spread": self.spread,
             "initial_spread": self.initial_spread,
             "speed": self.speed,
             "agreement_since": self.since,
             "rate": self.rate,
+            "contraction": None if self.contraction is None else self.contraction._asdict(),
             "safe": self.safe,
             "promise": self.promise,
             "groups": [{"value": value, "nodes": list(labels)} for value, labels in self.groups],
@@ -101,7 +117,7 @@ class Outcome:
 
 
 def verdict_of(
-    spread: Floats, speed: Floats, limit: float, dwell: int, *, watched: bool, unchanged: bool
+    spread: Floats, speed: Floats, limit: float, dwell: int, *, watched: bool, unchanged: bool, diverged: bool = False
 ) -> tuple[RunVerdict, bool]:
     """Return the verdict of one run, and whether it is an exact split.
 
@@ -117,6 +133,8 @@ def verdict_of(
         Whether two groups were watched; then a split is theirs, and nothing else is called one.
     unchanged : bool
         Whether the watched groups kept every position and a velocity of 0 exactly, at every step, apart.
+    diverged : bool
+        Whether the run was stopped because it diverged; then it is no agreement and no observed split.
 
     Notes
     -----
@@ -126,6 +144,8 @@ def verdict_of(
     late_spread, late_speed = spread[-dwell:], speed[-dwell:]
     if watched and unchanged:
         return RunVerdict.SPLIT, True
+    if diverged:
+        return RunVerdict.DIVERGENCE, False
     if len(late_spread) < dwell:
         return RunVerdict.UNDECIDED, False
     if late_spread.max() <= limit and late_speed.max() <= limit:
@@ -136,7 +156,7 @@ def verdict_of(
 
 
 def settled_since(spread: Floats, limit: float) -> int | None:
-    """Return the first step from which the spread stays within the limit, or None."""
+    """Return the first step from which the spread stays within the limit, or None; NaN is outside."""
     outside = np.flatnonzero(~(spread <= limit))
     if not len(outside):
         return 0
@@ -147,7 +167,7 @@ def convergence_rate(spread: Floats) -> float | None:
     """Return the factor per step of an exponential decay fitted to the spread, by least squares on its logarithm.
 
     Only the states before the spread first falls below 1e-10 of its start are used, where rounding does not matter.
-    None when fewer than 3 are left or the fit does not shrink.
+    None when fewer than 3 are left, the fit does not shrink, or one of them is no finite number.
 
     >>> round(convergence_rate(0.5 ** np.arange(20.0)), 6)
     0.5
@@ -156,7 +176,7 @@ def convergence_rate(spread: Floats) -> float | None:
         return None
     low = np.flatnonzero(spread <= 1e-10 * spread[0])
     used = spread[: low[0]] if len(low) else spread
-    if len(used) < 3:
+    if len(used) < 3 or not np.isfinite(used).all():
         return None
     slope = float(np.polyfit(np.arange(len(used)), np.log(used), 1)[0])
     return float(np.exp(slope)) if slope < 0 else None
@@ -166,6 +186,7 @@ def groups_of(
     aligned: Floats, normal: npt.NDArray[np.bool_], labels: tuple[Label, ...], limit: float
 ) -> tuple[tuple[float, tuple[Label, ...]], ...]:
     """Return the normal vehicles grouped wherever two neighbours on the line are farther apart than the limit."""
+    # Not "> limit": what is not a number is close to nothing.
     order = [i for i in np.argsort(aligned, kind="stable").tolist() if normal[i]]
     found: list[list[int]] = []
     for i in order:
