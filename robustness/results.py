@@ -78,6 +78,8 @@ class RobustnessResult:
         What is proven about r*.
     s_bounds : Bounds or None
         What is proven about s_max(r), for ``determine_robustness``.
+    profile : mapping or None
+        The whole table r -> s_max(r), where ``determine_robustness`` computed it on the way.
     algorithm : str
         The name in ``ALGORITHMS`` that decided, or the bound or rule that made a search unnecessary.
     stats : mapping
@@ -93,6 +95,7 @@ class RobustnessResult:
     certificate: bytes | None = field(default=None, repr=False)
     bounds: Bounds | None = None
     s_bounds: Bounds | None = None
+    profile: Mapping[int, int] | None = field(default=None, compare=False, hash=False)
     algorithm: str = ""
     stats: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}), compare=False, hash=False)
     seconds: float = field(default=0.0, compare=False)
@@ -117,7 +120,8 @@ class RobustnessResult:
             return False
         raise Undecided(
             f"({self.r},{self.s})-robustness was not decided ({self.stats.get('reason', 'a limit was reached')}): "
-            "raise the time limit or choose another algorithm"
+            "raise the time limit or choose another algorithm",
+            bounds=self.bounds,
         )
 
     def summary(self) -> str:

@@ -10,10 +10,10 @@ from hypothesis import HealthCheck, Phase, find, given, settings
 from hypothesis import strategies as st
 
 import robustness as rb
-from robustness.decision.algorithms import Limits
 from robustness.decision.algorithms.exhaustive import decide
 from robustness.digraph import as_digraph
 from robustness.errors import InvalidParameter, Undecided
+from robustness.limits import Limits
 from robustness.results import Verdict
 from robustness.testing import (
     assert_not_robust,

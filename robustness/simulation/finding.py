@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-from robustness.decision.algorithms import Progress
 from robustness.decision.front import check_rs_robustness
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
+from robustness.limits import Progress
 from robustness.results import Verdict
 from robustness.simulation.attacks import Attack, attack_from_trap, attack_from_violation
 from robustness.traps import find_trap

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, overload
 
-from robustness.decision.algorithms import Limits, Progress
-from robustness.decision.front import limits_of
 from robustness.digraph import GraphLike, as_digraph
 from robustness.errors import InvalidParameter
+from robustness.limits import Limits, Progress
 from robustness.threat_models.deciding import Decisions
 from robustness.threat_models.judging import judge
 from robustness.threat_models.models import THREAT_MODELS, threat_model_named
@@ -102,8 +100,7 @@ def tolerance(
     >>> table["delayed"].attack.malicious
     frozenset({0})
     """
-    started = time.monotonic()
-    limits = limits_of(started, time_limit, jobs, seed, progress)
+    limits = Limits.of(time_limit, jobs, seed, progress)
     decisions, names = _questions(G, model, tau, limits)
     over = over_time if isinstance(decisions, JointDecisions) else threat_model_named
     results = tuple(judge(decisions, over(name)) for name in names)
@@ -118,12 +115,9 @@ def _questions(G: Any, model: str | None, tau: int | None, limits: Limits) -> tu
         if tau is not None:
             raise InvalidParameter("tau belongs to a time-varying network: leave it out, or pass a TimeVaryingGraph")
         names = tuple(THREAT_MODELS) if model is None else (threat_model_named(model).name,)
-        return Decisions(as_digraph(G), limits.deadline, limits.jobs, limits.seed, limits.progress), names
+        return Decisions(as_digraph(G), limits), names
     if type(tau) is not int or tau < 1:
         raise InvalidParameter(f"a time-varying network needs tau, an integer of at least 1, not {tau!r}")
     names = MODELS_OVER_TIME if model is None else (over_time(model).name,)
     union = G.union(0, len(G))
-    decisions = JointDecisions(
-        union, limits.deadline, limits.jobs, limits.seed, limits.progress, sequence=G, tau=tau
-    )
-    return decisions, names
+    return JointDecisions(union, limits, sequence=G, tau=tau), names

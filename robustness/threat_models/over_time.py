@@ -19,7 +19,8 @@ from robustness.errors import InvalidParameter
 from robustness.results import RobustnessResult, Verdict
 from robustness.threat_models.deciding import Decisions
 from robustness.threat_models.models import SECOND_ORDER_GAINS, THREAT_MODELS, ThreatModel
-from robustness.time_varying import TimeVaryingGraph, check_joint_robustness
+from robustness.time_varying import TimeVaryingGraph
+from robustness.time_varying.checking import check_joint_within
 
 __all__ = ["MODELS_OVER_TIME", "JointDecisions", "over_time"]
 
@@ -72,12 +73,8 @@ class JointDecisions(Decisions):
         return "in the union of all steps, "
 
     def _decide(self, r: int, share: float) -> RobustnessResult:
-        limits = self.limits(share)
-        left = None if limits.deadline is None else max(0.01, limits.seconds_left())
         started = time.monotonic()
-        found = check_joint_robustness(
-            self.sequence, r, tau=self.tau, time_limit=left, progress=self.progress
-        )
+        found = check_joint_within(self.sequence, r, 1, tau=self.tau, limits=self.limits.share(share))
         verdict = found.verdict
         if found.within_tau is not None:
             verdict = Verdict.ROBUST if found.within_tau else Verdict.NOT_ROBUST

@@ -9,10 +9,9 @@ from types import MappingProxyType
 from typing import Any
 
 from certificates.graph import Label
-from robustness.decision.algorithms import Limits, Progress
-from robustness.decision.front import limits_of
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InternalError, InvalidParameter, Undecided
+from robustness.limits import Limits, Progress
 from robustness.traps.question import Question, Sets, solves
 from robustness.traps.shortcuts import settle_trap
 
@@ -134,7 +133,7 @@ def find_trap(
     if algorithm != "auto" and algorithm not in TRAP_ALGORITHMS:
         raise InvalidParameter(f"algorithm is 'auto' or one of {', '.join(TRAP_ALGORITHMS)}, not {algorithm!r}")
     question = Question(f, faces == 2, bool(local))
-    limits = limits_of(started, time_limit, jobs, seed, progress)
+    limits = Limits.of(time_limit, jobs, seed, progress)
     exists, sets, name, stats = decide_trap(graph, question, limits, algorithm, options)
     M, S1, S2 = (graph.labels_of(ids) for ids in sets or (frozenset(), frozenset(), frozenset()))
     return TrapResult(

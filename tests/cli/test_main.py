@@ -17,7 +17,7 @@ from click.testing import CliRunner
 import robustness as rb
 from cli import main, options
 from cli.output import Console, ProgressLine, set_text
-from robustness.decision.algorithms import Progress
+from robustness.limits import Progress
 
 ROOT = Path(__file__).parents[2]
 SQUARE = str(ROOT / "tests" / "data" / "square.json")

@@ -17,10 +17,10 @@ import robustness as rb
 from robustness.constructions.counterexamples import FIVE_NODE_READINGS, five_node_figure, two_f_robust_counterexample
 from robustness.constructions.small_graphs import each_graph
 from robustness.constructions.traps import is_trap
-from robustness.decision.algorithms import Limits
 from robustness.definitions import is_violation
 from robustness.digraph import Digraph, as_digraph
 from robustness.errors import InvalidParameter
+from robustness.limits import Limits
 from robustness.results import RobustnessResult, Verdict
 from robustness.simulation import (
     RULES,

@@ -174,7 +174,7 @@ class TestCommand:
 
 def test_an_undecided_window_promises_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     undecided = rb.JointResult(rb.Verdict.UNDECIDED, 1, 1, reason="the time limit was reached")
-    monkeypatch.setattr("robustness.threat_models.over_time.check_joint_robustness", lambda *_, **__: undecided)
+    monkeypatch.setattr("robustness.threat_models.over_time.check_joint_within", lambda *_, **__: undecided)
     result = tolerance(spread(nx.complete_graph(5), 2, 2), "delayed", tau=2)
     assert result.guaranteed == -1
     assert result.standing(0) is Standing.UNDECIDED
