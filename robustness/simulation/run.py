@@ -74,10 +74,7 @@ def simulate(
         raise InvalidParameter(
             f"a run needs a Scenario, not {type(scenario).__name__}: Scenario(G, f=...), or robustness.simulate(G, ...)"
         )
-    if isinstance(starts, Start):
-        starts = [starts]
-    if not isinstance(starts, Sequence) or not all(isinstance(start, Start) for start in starts):
-        raise InvalidParameter("starts are Start objects, one or a sequence of them: Start(...) or random_start(G, ...)")
+    starts = _several(starts)
     if not starts:
         return ()
     deadline = float("inf") if time_limit is None else time.monotonic() + time_limit
@@ -110,6 +107,15 @@ def simulate(
         batch.act(scenario.steps)
     observer.see(scenario.steps, batch.p, batch.q, batch.sent)
     return observer.outcomes(batch.divergence.since)
+
+
+def _several(starts: object) -> list[Start]:
+    """Return starts as a list, or raise :class:`InvalidParameter`."""
+    given = [starts] if isinstance(starts, Start) else list(starts) if isinstance(starts, Sequence) else [starts]
+    found = [start for start in given if isinstance(start, Start)]
+    if len(found) < len(given):
+        raise InvalidParameter("starts are Start objects, one or a sequence: Start(...) or random_start(G, ...)")
+    return found
 
 
 def _warn_of(fleet: Fleet, promises: Sequence[str | None], *, stacklevel: int) -> None:

@@ -27,9 +27,10 @@ def scenario(**changes: Any) -> Scenario:
 
 class TestConverted:
     def test_every_kind_of_network(self) -> None:
-        networks = [K5, nx.DiGraph(K5), as_digraph(K5), as_topology(K5, 1), TimeVaryingGraph([K5], period=1), lambda k: K5]
-        outcomes = {simulate(Scenario(network, 1, steps=60), Start([4], PLACES, REST))[0].spread for network in networks}
-        assert len(outcomes) == 1
+        fixed, varying = as_topology(K5, 1), TimeVaryingGraph([K5], period=1)
+        networks = [K5, nx.DiGraph(K5), as_digraph(K5), fixed, varying, lambda k: K5]
+        start = Start([4], PLACES, REST)
+        assert len({simulate(Scenario(network, 1, steps=60), start)[0].spread for network in networks}) == 1
 
     def test_the_calls_of_the_issue(self) -> None:
         start = random_start(K5, [4])
@@ -175,9 +176,8 @@ class TestRulesOfOnesOwn:
             return sum(kept) / len(kept)
 
         start = Start([4], [0, 1, 2, 3, 1000], REST)
-        ends = [
-            simulate(scenario(rule=rule, adversary="constant", steps=200), start)[0].groups[0][0] for rule in (mean, trimmed)
-        ]
+        scenarios = [scenario(rule=rule, adversary="constant", steps=200) for rule in (mean, trimmed)]
+        ends = [simulate(each, start)[0].groups[0][0] for each in scenarios]
         assert ends[0] > 900
         assert 0 <= ends[1] <= 3
 
