@@ -42,6 +42,7 @@ _SCHEDULES = ("synchronous", "periodic", "random", "adversarial", "delayed")
 _ADVERSARIES = ("auto", "constant", "ramp", "sine", "random", "two-face", "extreme", "greedy", "crash", "omission")
 _EXPERIMENTS = (
     "setting-1", "setting-2", "proposition-1", "necessity", "sufficiency", "gap", "corollary-1", "corollary-2",
+    "gains-outside", "swap", "push",
 )  # fmt: skip
 
 #: Seconds for the search for an attack.

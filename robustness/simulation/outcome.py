@@ -21,7 +21,7 @@ class RunVerdict(enum.Enum):
 
     #: All normal vehicles stayed within the tolerance during the last ``dwell`` states.
     AGREEMENT = "agreement"
-    #: Normal vehicles stayed apart by a gap that did not change by one bit: see :func:`verdict_of`.
+    #: Normal vehicles stayed apart by a gap that does not change by one bit, or repeats: see :func:`verdict_of`.
     SPLIT = "split"
     #: A normal vehicle left the finite numbers or grew past the scenario's factor: see ``diverged_at``.
     DIVERGENCE = "divergence"
@@ -138,8 +138,9 @@ def verdict_of(
 
     Notes
     -----
-    Without watched groups a split is a gap above the tolerance that is bit for bit the same in each of the last
-    ``dwell`` states. That is an observation at the horizon; only the watched kind is proven to last.
+    Without watched groups a split is a gap that in the last ``dwell`` states stays the same bit for bit, or repeats
+    after at most half of them (vehicles that swap places), and exceeds the tolerance. That is an observation at the
+    horizon; only the watched kind is proven to last.
     """
     late_spread, late_speed = spread[-dwell:], speed[-dwell:]
     if watched and unchanged:
@@ -150,9 +151,14 @@ def verdict_of(
         return RunVerdict.UNDECIDED, False
     if late_spread.max() <= limit and late_speed.max() <= limit:
         return RunVerdict.AGREEMENT, False
-    if not watched and late_spread.min() > limit and (late_spread == late_spread[0]).all():
+    if not watched and late_spread.max() > limit and _repeats(late_spread):
         return RunVerdict.SPLIT, False
     return RunVerdict.UNDECIDED, False
+
+
+def _repeats(values: Floats) -> bool:
+    """Return whether the values repeat bit for bit after one step, or after a few, at most half of them."""
+    return any((values[turn:] == values[:-turn]).all() for turn in range(1, len(values) // 2 + 1))
 
 
 def settled_since(spread: Floats, limit: float) -> int | None:
