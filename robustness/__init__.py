@@ -28,6 +28,7 @@ from robustness.errors import (
 from robustness.results import Bound, Bounds, RobustnessResult, Verdict, Witness
 
 if TYPE_CHECKING:
+    from robustness.figures.network import draw
     from robustness.files import read_topology, write_topology
     from robustness.graph_search import find_graph
     from robustness.threat_models import ToleranceResult, tolerance
@@ -47,6 +48,7 @@ _LATER = {
     "certify_joint": "robustness.time_varying",
     "check_joint_robustness": "robustness.time_varying",
     "constructions": "robustness.constructions",
+    "draw": "robustness.figures.network",
     "find_graph": "robustness.graph_search",
     "joint_curve": "robustness.time_varying",
     "read_topology": "robustness.files",
@@ -78,6 +80,7 @@ __all__ = [
     "check_joint_robustness",
     "check_rs_robustness",
     "determine_robustness",
+    "draw",
     "find_graph",
     "is_r_robust",
     "is_rs_robust",
