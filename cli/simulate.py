@@ -89,6 +89,7 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
     metavar="PATH",
     help="A picture (.png, .svg, .pdf); with --experiment also a folder for one per case.",
 )
+@click.option("--animate", type=_FILE, metavar="FILE", help="The first run as a film: .gif, or .html to play.")
 @click.option("--expect", type=click.Choice(("agreement", "split")), help="Exit with 10 when it ends otherwise.")
 @json_option
 @timeout_option
@@ -110,6 +111,8 @@ def command(ctx: click.Context, console: Console, /, **options: Any) -> None:
         raise click.UsageError("--attack and --certificate need the GRAPH they are about.")
     if options["attack_file"] and options["certificate"]:
         raise click.UsageError("give one of --attack and --certificate.")
+    if options["animate"] is not None and (options["experiment"] or options["certificate"]):
+        raise click.UsageError("--animate shows one run: give it with GRAPH or --replay.")
     if options["over_time"] and (options["source"] is None or options["certificate"]):
         raise click.UsageError("--over-time says what GRAPH is, and a certificate is about one graph.")
     if options["repeat"] is not None and not options["over_time"]:
@@ -168,8 +171,9 @@ def _runs(ctx: click.Context, console: Console, options: dict[str, Any]) -> Exit
     else:
         scenario, starts = recorded[0], [recorded[1]]
     outcomes = simulate(
-        scenario, starts, record=options["plot"] is not None, jobs=options["jobs"], time_limit=options["timeout"]
-    )
+        scenario, starts, record=options["plot"] is not None or options["animate"] is not None, jobs=options["jobs"],
+        time_limit=options["timeout"],
+    )  # fmt: skip
     if options["save"] is not None:
         from robustness.simulation.replay import write_run
 
@@ -178,6 +182,13 @@ def _runs(ctx: click.Context, console: Console, options: dict[str, Any]) -> Exit
         from robustness.figures.simulation import Run, draw_runs
 
         draw_runs([Run(scenario, starts[0], outcomes[0])], options["plot"])
+        console.talk(f"wrote {options['plot']}")
+    if options["animate"] is not None:
+        from robustness.figures.animation import animate
+        from robustness.figures.simulation import Run
+
+        animate(Run(scenario, starts[0], outcomes[0]), options["animate"])
+        console.talk(f"wrote {options['animate']}")
     overall = _overall(outcomes)
     if options["as_json"]:
         console.document(SCHEMA, _document(scenario, starts, outcomes, overall))
@@ -235,6 +246,7 @@ def _scenario(network: Topology, options: dict[str, Any]) -> tuple[Scenario, lis
     from dataclasses import replace
 
     from robustness.simulation.adversaries import ADVERSARIES
+    from robustness.simulation.front import most_heard
     from robustness.simulation.scenario import Scenario, random_start
     from robustness.simulation.schedules import schedule_named
 
@@ -244,7 +256,7 @@ def _scenario(network: Topology, options: dict[str, Any]) -> tuple[Scenario, lis
     tau = default if options["tau"] is None else options["tau"]
     # A link may be gone for a turn less one step. What tau has beyond that is for waits and delays.
     schedule = replace(schedule_named(options["schedule"], max(tau - turn + 1, 0)), tau=tau)
-    malicious = [node_named(graph, text) for text in options["malicious"]] or _most_heard(graph, bound)
+    malicious = [node_named(graph, text) for text in options["malicious"]] or most_heard(graph, bound)
     adversary = ADVERSARIES["greedy" if options["adversary"] == "auto" else options["adversary"]]()
     scenario = Scenario(
         network, bound, options["rule"], options["model"], adversary,
@@ -276,14 +288,6 @@ def _worst(scenario: Scenario, starts: list[Start], options: dict[str, Any]) -> 
         return scenario, starts
     groups = (tuple(set_document(attack.S1)), tuple(set_document(attack.S2)))
     return replace(scenario, adversary=attack.adversary, groups=groups), [attack.start(seed=options["seed"])]
-
-
-def _most_heard(graph: Digraph, f: int) -> list[Label]:
-    """Return the f nodes with the most listeners, at least one node fewer than all."""
-    import numpy as np
-
-    listeners = np.bincount(graph.in_indices, minlength=graph.n)
-    return [graph.labels[i] for i in np.argsort(-listeners, kind="stable")[: max(0, min(f, graph.n - 1))].tolist()]
 
 
 def _overall(outcomes: Sequence[Outcome]) -> str:

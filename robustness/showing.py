@@ -18,7 +18,7 @@ from robustness.natural_order import in_natural_order
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["Shown", "labels_in_words"]
+__all__ = ["Shown", "ShownOverTime", "labels_in_words"]
 
 #: Larger networks are not drawn in notebooks unless asked for: a picture of them says little and takes long.
 _LARGEST = 80
@@ -103,7 +103,10 @@ class Shown:
             figure = new_figure(6.4, 3.6)
         except MissingExtra:
             return ""
-        self.plot(ax=figure.subplots()).set_title("")
+        try:
+            self.plot(ax=figure.subplots()).set_title("")
+        except InvalidParameter:  # a run that was not recorded
+            return ""
         return _as_image(figure)
 
     def _repr_html_(self) -> str:
@@ -117,6 +120,40 @@ class Shown:
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
         return {"text/plain": repr(self), "text/html": self._repr_html_()}
+
+
+class ShownOverTime(Shown):
+    """A run, which is drawn against time."""
+
+    __slots__ = ()
+
+    def plot(
+        self,
+        G: GraphLike | None = None,
+        *,
+        pos: Mapping[Hashable, Sequence[float]] | None = None,
+        ax: Axes | None = None,
+    ) -> Axes:
+        """Draw the run against time, vehicles coloured by the group they end in, and return the axes.
+
+        Parameters
+        ----------
+        G, pos
+            As for other answers: with a graph given, the graph is drawn instead, with the groups that were watched.
+        ax : matplotlib axes, optional
+
+        Raises
+        ------
+        InvalidParameter
+            When the run was not recorded.
+        MissingExtra
+            When matplotlib is not installed.
+        """
+        if G is not None:
+            return super().plot(G, pos=pos, ax=ax)
+        from robustness.figures.simulation import draw_outcome
+
+        return draw_outcome(self, ax)
 
 
 def _as_image(figure: Any) -> str:

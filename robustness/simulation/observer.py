@@ -48,7 +48,7 @@ class Observer:
         record: bool,
     ) -> None:
         states, runs, n = scenario.steps + 1, len(starts), setting.graph.n
-        self.setting, self.scenario, self.promises = setting, scenario, promises
+        self.setting, self.scenario, self.starts, self.promises = setting, scenario, starts, promises
         self.low, self.high = np.zeros((states, runs)), np.zeros((states, runs))
         self.speed = np.zeros((states, runs))
         self.normal = ~setting.malicious
@@ -121,6 +121,8 @@ class Observer:
             promise=self.promises[b],
             groups=groups_of(self.final[b], self.normal[b], setting.graph.labels, limit),
             trajectory=states,
+            scenario=scenario,
+            start=self.starts[b],
         )
 
     def _safe(self, b: int, *, stopped: bool) -> bool | None:

@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import enum
+import importlib
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from certificates.graph import Label
+from robustness.digraph import Digraph
+from robustness.errors import InvalidParameter, MissingExtra
+from robustness.showing import ShownOverTime, labels_in_words
 from robustness.simulation.contraction import Contraction
-from robustness.simulation.dynamics import Floats
+from robustness.simulation.dynamics import Floats, to_absolute
+
+if TYPE_CHECKING:
+    from robustness.simulation.scenario import Scenario, Start
 
 __all__ = ["Outcome", "RunVerdict", "Trajectory", "convergence_rate", "groups_of", "settled_since", "verdict_of"]
 
@@ -46,8 +53,8 @@ class Trajectory:
     sent: Floats
 
 
-@dataclass(frozen=True, slots=True)
-class Outcome:
+@dataclass(frozen=True, slots=True, repr=False)
+class Outcome(ShownOverTime):
     """One run's verdict and its numbers.
 
     Attributes
@@ -82,6 +89,8 @@ class Outcome:
         pairs of the mean value and the labels.
     trajectory : Trajectory or None
         When recorded.
+    scenario, start : Scenario, Start or None
+        What was run.
     """
 
     verdict: RunVerdict
@@ -96,7 +105,74 @@ class Outcome:
     safe: bool | None
     promise: str | None
     groups: tuple[tuple[float, tuple[Label, ...]], ...]
-    trajectory: Trajectory | None = field(default=None, compare=False, repr=False)
+    trajectory: Trajectory | None = field(default=None, compare=False)
+    scenario: Scenario | None = field(default=None, compare=False)
+    start: Start | None = field(default=None, compare=False)
+
+    @property
+    def positions(self) -> Floats:
+        """Where every vehicle is, ``x = p + kTr``: shape ``(steps + 1, n)``, columns as in :attr:`labels`.
+
+        After a divergence the last finite positions are repeated.
+
+        Raises
+        ------
+        InvalidParameter
+            When the run was not recorded.
+        """
+        return self._absolute()[0]
+
+    @property
+    def velocities(self) -> Floats:
+        """How fast every vehicle is, ``v = q + r``; shape and errors as for :attr:`positions`. 0 for first order."""
+        return self._absolute()[1]
+
+    @property
+    def labels(self) -> tuple[Label, ...]:
+        """The nodes, in the order of the columns."""
+        return () if self.scenario is None else self.scenario.network.union.labels
+
+    def _absolute(self) -> tuple[Floats, Floats]:
+        states, scenario = self.trajectory, self.scenario
+        if states is None or scenario is None:
+            raise InvalidParameter("only a recorded run has positions: simulate with record=True")
+        steps = np.arange(len(states.p))[:, None]
+        return to_absolute(states.p, states.q, steps, scenario.T, scenario.target_speed)
+
+    def to_frame(self) -> Any:
+        """Return the positions as a pandas DataFrame: one row per step, one column per node.
+
+        Raises
+        ------
+        MissingExtra
+            When pandas is not installed.
+        InvalidParameter
+            When the run was not recorded.
+        """
+        positions = self.positions
+        try:
+            # Not a dependency: who has pandas gets its frames.
+            pandas = importlib.import_module("pandas")
+        except ImportError:
+            raise MissingExtra("a DataFrame needs pandas: pip install pandas") from None
+        columns = pandas.Index(list(self.labels), name="node", tupleize_cols=False)
+        return pandas.DataFrame(positions, columns=columns, index=pandas.RangeIndex(len(positions), name="step"))
+
+    def summary(self) -> str:
+        """Return the verdict and where the vehicles are, in one line."""
+        where = "; ".join(f"{labels_in_words(labels)} at {value:.6g}" for value, labels in self.groups[:6])
+        more = f"; {len(self.groups) - 6} more groups" if len(self.groups) > 6 else ""
+        exactly = ", exactly" if self.exact else ""
+        at = "" if self.diverged_at is None else f" at step {self.diverged_at}"
+        return f"{self.verdict.value}{exactly}{at}: {where}{more}"
+
+    def pictured(self) -> Digraph | None:
+        """Return the network, all links that ever exist."""
+        return None if self.scenario is None else self.scenario.network.union
+
+    def evidence(self) -> list[tuple[str, str]]:
+        """Return the numbers, as rows of a name and a text."""
+        return [(name, str(value)) for name, value in self.as_dict().items() if name not in ("outcome", "groups")]
 
     def as_dict(self) -> dict[str, Any]:
         """Return the outcome as JSON-ready values (without the trajectory)."""

@@ -230,7 +230,7 @@ class TestPictures:
         draw_runs([self.recorded()], tmp_path / "run.svg", quantities=("velocity",))
         picture = (tmp_path / "run.svg").read_text()
         assert picture.count("<!-- velocity v -->") == 1
-        assert all(f"<!-- {label} -->" in picture for label in (0, 1, 2))
+        assert "<!-- {0, 1, 2} at" in picture
 
     def test_refusals(self, tmp_path: Path) -> None:
         run = self.recorded()
