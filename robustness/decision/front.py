@@ -185,7 +185,7 @@ def determine_robustness(
     limits = Limits.of(time_limit, jobs, seed, progress)
     limits.within(s_time_limit, "s_time_limit")
     found = determine(graph, algorithm, limits, s_time_limit, on_bounds)
-    return replace(found, seconds=time.monotonic() - started)
+    return replace(found, seconds=time.monotonic() - started, graph=graph)
 
 
 def robustness_profile(
@@ -245,6 +245,7 @@ def _result(graph: Digraph, r: int, s: int, name: str, answer: Answer, started: 
         algorithm=name,
         stats=answer.stats,
         seconds=time.monotonic() - started,
+        graph=graph,
     )
 
 

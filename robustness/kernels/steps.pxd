@@ -50,7 +50,7 @@ cpdef worst_delays(
 @cython.locals(b=number, j=number, counter=word, mixed=word, top=word)
 cpdef fill_uniform(const word[::1] stream, double[:, ::1] values)
 
-@cython.locals(b=number, i=number, lo=double, hi=double, quick=double)
+@cython.locals(b=number, i=number, lo=double, hi=double, quick=double, value=double, fast=double)
 cpdef extremes(
     double[:, ::1] p, double[:, ::1] q, const unsigned char[:, ::1] normal, double[::1] low, double[::1] high,
     double[::1] fastest)

@@ -187,9 +187,14 @@ def extremes(p, q, normal, low, high, fastest):
         lo, hi, quick = _INFINITY, -_INFINITY, 0.0
         for i in range(p.shape[1]):
             if normal[b, i]:
-                lo = min(lo, p[b, i])
-                hi = max(hi, p[b, i])
-                quick = max(quick, abs(q[b, i]))
+                value, fast = p[b, i], abs(q[b, i])
+                # Not min and max: they pass over NaN, so that a run of NaN would end in agreement. NaN stays here.
+                if value < lo or value != value:
+                    lo = value
+                if value > hi or value != value:
+                    hi = value
+                if fast > quick or fast != fast:
+                    quick = fast
         low[b], high[b], fastest[b] = lo, hi, quick
 
 

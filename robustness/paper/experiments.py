@@ -7,7 +7,8 @@ The paper leaves things open; every reading is stated where it is used and in ``
 * the values that vehicle 4 sends are read in the transformed coordinate p (its ``x_4[2k] = 2 + kTr`` moves along with
   the target, its 200 does not); the other reading, absolute positions, is run beside it;
 * vehicles that have not updated yet have heard nothing and only brake towards the target speed;
-* in Setting 2 vehicles 1 and 5 update at even steps, at which the last claim is 200, that of the odd step before.
+* in Setting 2 vehicles 1 and 5 update at even steps, at which the last claim is 200, that of the odd step before; that
+  they hear the true position at even steps is run beside it.
 """
 
 from __future__ import annotations
@@ -25,10 +26,11 @@ from robustness.constructions.counterexamples import FIVE_NODE_READINGS, five_no
 from robustness.decision.front import check_rs_robustness
 from robustness.digraph import Digraph, as_digraph
 from robustness.errors import InternalError, InvalidParameter
+from robustness.paper.gain_cases import GainRun, gains_outside, push_runs, swap_runs
 from robustness.simulation.adversaries import Adversary, Alternating, Constant, Liar, TwoFace
 from robustness.simulation.attacks import attack_from_trap, attack_from_violation
 from robustness.simulation.gains import PromiseWarning
-from robustness.simulation.motion import Creep, InAbsolutePositions
+from robustness.simulation.motion import Creep, InAbsolutePositions, InTurns
 from robustness.simulation.outcome import Outcome
 from robustness.simulation.run import simulate
 from robustness.simulation.scenario import Scenario, Start
@@ -54,8 +56,8 @@ class Case:
     reading : str
         What was read into the paper's text, or which condition holds.
     reported : str or None
-        The verdict that the paper reports or its theorem promises, ``"agreement"`` or ``"split"``; None: a reading
-        that is run for comparison only.
+        The verdict that the paper reports or that a theorem proves, ``"agreement"``, ``"split"`` or ``"divergence"``;
+        None: a reading that is run for comparison only.
     scenario : Scenario
     start : Start
     """
@@ -144,7 +146,11 @@ def _setting_2() -> tuple[Case, ...]:
         frame = _five_nodes(network, positions, gains, moving, **more)
         cases.append(Case(name, "claims and motion of vehicle 4 are transformed positions p", verdict, *frame))
     frame = _five_nodes(five_node_figure(), positions, gains, fixed, **more)
-    return (*cases, Case("figure read as wheel", "the motion of vehicle 4 is in absolute positions x", None, *frame))
+    cases.append(Case("figure read as wheel", "the motion of vehicle 4 is in absolute positions x", None, *frame))
+    honest: Adversary = Liar(InTurns(Creep(), Constant(200.0)), Creep())
+    frame = _five_nodes(five_node_figure(), positions, gains, honest, **more)
+    reading = "at even steps, where vehicles 1 and 5 update, vehicle 4 says where it is; 200 at odd ones"
+    return (*cases, Case("figure read as wheel", reading, None, *frame))
 
 
 def _proposition_1() -> tuple[Case, ...]:
@@ -224,6 +230,13 @@ def _corollary_2() -> tuple[Case, ...]:
     return tuple(cases)
 
 
+def _about(runs: Callable[[], tuple[GainRun, ...]]) -> Callable[[], tuple[Case, ...]]:
+    def cases() -> tuple[Case, ...]:
+        return tuple(Case(run.name, run.reading, run.expected, run.scenario, run.start) for run in runs())
+
+    return cases
+
+
 def _corollary_1() -> tuple[Case, ...]:
     """Return a (2f+1)-robust graph with more than f malicious nodes in all, at most f near any normal one."""
     graph = as_digraph(_circulant(24, 3))
@@ -272,6 +285,9 @@ EXPERIMENTS: Mapping[str, Experiment] = MappingProxyType(
             Experiment("gap", "Between the conditions: (f+1,f+1)-robust and trapped", _gap),
             Experiment("corollary-1", "Corollary 1: (2f+1)-robust under the f-local model", _corollary_1),
             Experiment("corollary-2", "Corollary 2: jointly (2f+1)-robust over at most tau steps", _corollary_2),
+            Experiment("gains-outside", "Outside the gain region: delays alone part vehicles", _about(gains_outside)),
+            Experiment("swap", "On the edge of the gain region: vehicles swap places for ever", _about(swap_runs)),
+            Experiment("push", "Theorem 1 with any positive gain: one liar, delays of one step", _about(push_runs)),
         )
     }
 )

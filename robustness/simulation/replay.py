@@ -32,10 +32,11 @@ _KINDS: Mapping[str, type] = MappingProxyType(
         for kind in (
             Scenario, Start, Topology, schedules.Schedule, schedules.EveryStep, schedules.PeriodicUpdates,
             schedules.RandomUpdates, schedules.AdversarialUpdates, schedules.NoDelays, schedules.ConstantDelays,
-            schedules.RandomDelays, schedules.AdversarialDelays, adversaries.Alternating, adversaries.Constant,
+            schedules.PeriodicDelays, schedules.RandomDelays, schedules.AdversarialDelays, adversaries.Alternating,
+            adversaries.Constant,
             adversaries.Crash, adversaries.ExtremeValue, adversaries.Greedy, adversaries.Liar, adversaries.Noise,
             adversaries.Omission, adversaries.Ramp, adversaries.Sine, adversaries.TwoFace, motion.Creep,
-            motion.InAbsolutePositions,
+            motion.InAbsolutePositions, motion.InTurns, motion.Push,
         )
     }
 )  # fmt: skip

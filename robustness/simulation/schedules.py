@@ -32,6 +32,7 @@ __all__ = [
     "EveryStep",
     "NoDelays",
     "Past",
+    "PeriodicDelays",
     "PeriodicUpdates",
     "RandomDelays",
     "RandomUpdates",
@@ -238,6 +239,38 @@ class ConstantDelays:
             (sender,), (receiver,) = graph.ids([u]), graph.ids([v])
             row[(view.setting.tails == sender) & (view.setting.heads == receiver)] = steps
         return row[None]
+
+
+@dataclass(frozen=True, slots=True)
+class PeriodicDelays:
+    """Every arc has the same delay, which changes from step to step and repeats.
+
+    Parameters
+    ----------
+    steps : tuple of int
+        The delay at step k is ``steps[k % len(steps)]``.
+    """
+
+    steps: tuple[int, ...]
+
+    def __post_init__(self) -> None:
+        if not self.steps or min(self.steps) < 0:
+            raise InvalidParameter("periodic delays are one or more numbers of steps, each of at least 0")
+
+    @property
+    def bound(self) -> int:
+        """The greatest of the delays."""
+        return max(self.steps)
+
+    @property
+    def adversarial(self) -> bool:
+        """False."""
+        return False
+
+    def delays(self, view: View, past: Past) -> Steps:
+        """Return the delay of this step, for every arc."""
+        late = self.steps[view.step % len(self.steps)]
+        return np.full((1, view.setting.graph.arc_count), late, dtype=np.int64)
 
 
 @dataclass(frozen=True, slots=True)

@@ -216,7 +216,7 @@ def test_results_read_well() -> None:
     for found in (robust, given, refuted, undecided):
         page = found._repr_mimebundle_()
         assert found.summary() in page["text/html"]
-        assert page["text/plain"].startswith("JointResult(")
+        assert page["text/plain"] == f"<JointResult: {found.summary()}>"
     assert "S1" in refuted._repr_mimebundle_()["text/html"]
 
 
