@@ -69,19 +69,6 @@ def run(*arguments: str, cwd: Path, **environment: str) -> str:
     return done.stdout
 
 
-@pytest.fixture(scope="module")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The wheel, built from this checkout without a network."""
-    folder = tmp_path_factory.mktemp("wheel")
-    run(
-        *("-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-index", "--no-deps"),
-        *("--no-build-isolation", "--wheel-dir", str(folder), str(ROOT)),
-        cwd=folder,
-    )
-    (built,) = folder.glob("*.whl")
-    return built
-
-
 class TestWheel:
     def test_holds_exactly_the_three_packages(self, wheel: Path) -> None:
         names = zipfile.ZipFile(wheel).namelist()

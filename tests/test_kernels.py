@@ -141,3 +141,20 @@ def test_the_digest_is_of_names_and_contents(tmp_path: Path) -> None:
         (folder / name).write_text(content, encoding="utf-8")
         seen.add(sources.digest(folder))
     assert len(seen) == 4
+
+
+def test_the_command_says_in_one_line_that_machine_code_is_not_used(installed: Path) -> None:
+    shutil.copytree(ROOT / "cli", installed / "cli", ignore=shutil.ignore_patterns("__pycache__"))
+    source = installed / "robustness" / "kernels" / "words.py"
+    source.write_text(source.read_text(encoding="utf-8") + "\n# Pulled, not built.\n", encoding="utf-8")
+    # Twenty-four nodes of degree six: no shortcut of small graphs, so that a kernel is called.
+    links = [{"source": i, "target": (i + k) % 24} for i in range(24) for k in (1, 2, 3)]
+    graph = {"directed": False, "multigraph": False, "nodes": [{"id": i} for i in range(24)], "edges": links}
+    (installed / "g.json").write_text(json.dumps(graph), encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-m", "cli", "check", "g.json", "-r", "2"],
+        cwd=installed, env={"PATH": os.environ["PATH"], "PYTHONPATH": str(installed)},
+        capture_output=True, text=True, timeout=300, check=False,
+    )  # fmt: skip
+    (said,) = (line for line in done.stderr.splitlines() if "slow" in line)
+    assert "was made from other sources: run 'make' or 'pip install .' again" in said

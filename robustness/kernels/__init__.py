@@ -19,6 +19,7 @@ import importlib.util
 import os
 import platform
 import sys
+import warnings
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -59,7 +60,8 @@ def _why_not() -> str:
             continue
         try:
             module = importlib.import_module(f"{__name__}.{path.stem}")
-        except ImportError as problem:
+        except (ImportError, TypeError, ValueError) as problem:
+            # TypeError and ValueError: half an upgrade, in which the types of two files do not fit each other.
             return f"the machine code of {path.stem} cannot be loaded ({problem})"
         if str(module.__file__).endswith(".py"):
             return f"{path.stem} has no machine code: it was installed without a C compiler"
@@ -79,6 +81,10 @@ WHY_NOT: str = _why_not()
 
 #: Whether the kernels are machine code.
 IS_COMPILED: bool = not WHY_NOT
+
+if "cannot be loaded" in WHY_NOT or "other sources" in WHY_NOT:
+    # What was installed for speed is not what runs. Without a compiler, or as asked for, nothing is amiss.
+    warnings.warn(f"slow: {WHY_NOT}; the kernels run as plain Python, with the same answers", stacklevel=2)
 
 if WHY_NOT:
     for _name in [name for name in sys.modules if name.startswith(f"{__name__}.") and name != sources.__name__]:
