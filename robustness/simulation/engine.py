@@ -174,7 +174,7 @@ class Batch:
         stores: Stores,
         states: tuple[Floats, Floats, Floats, Floats],
     ) -> tuple[Any, ...]:
-        """Return what :func:`robustness.simulation.kernels.advance` takes after the range of runs."""
+        """Return what :func:`robustness.kernels.steps.advance` takes after the range of runs."""
         p, q, new_p, new_q = states
         fleet, graph = self.fleet, self.topology.union
         return (
@@ -186,7 +186,7 @@ class Batch:
 
     def _trial(self, p: Floats, q: Floats, sent: Floats) -> Floats:
         """Return the positions one step later if everybody updated now and heard ``sent`` at once."""
-        from robustness.simulation.kernels import advance
+        from robustness.kernels.steps import advance
 
         graph = self.topology.union
         arcs = graph.arc_count
@@ -205,7 +205,7 @@ class Batch:
 
 def _run_in_parts(pool: Executor | None, bounds: list[int], arguments: tuple[Any, ...]) -> None:
     """Advance the runs between consecutive bounds, each part in its own thread; runs are independent."""
-    from robustness.simulation.kernels import advance
+    from robustness.kernels.steps import advance
 
     parts = list(pairwise(bounds))
     if pool is None or len(parts) == 1:

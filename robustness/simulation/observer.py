@@ -81,9 +81,9 @@ class Observer:
 
     def see(self, step: int, p: Floats, q: Floats, sent: Floats) -> None:
         """Measure the states ``p, q (B, n)`` of one step."""
-        from robustness.simulation.kernels import extremes
+        from robustness.kernels.steps import extremes
 
-        extremes(p, q, self.normal, self.low[step], self.high[step], self.speed[step])
+        extremes(p, q, self.normal.view(np.uint8), self.low[step], self.high[step], self.speed[step])
         if self.scenario.groups is not None:
             moved = self.watched & ((p != self.setting.initial) | (q != 0.0))
             self.unchanged &= ~moved.any(axis=1)

@@ -314,14 +314,13 @@ class AdversarialDelays:
 
     def delays(self, view: View, past: Past) -> Steps:
         """Return the delay that serves each arc's receiver worst."""
-        from robustness.simulation.kernels import worst_delays
+        from robustness.kernels.steps import worst_delays
 
         setting = view.setting
         low, high = setting.normal_range(view.p)
         delays = np.empty((len(view.p), len(past.channel)), dtype=np.int64)
-        worst_delays(
-            view.step, self.bound, past.ring, past.channel, setting.heads, view.p > (low + high) / 2, delays
-        )
+        above = (view.p > (low + high) / 2).view(np.uint8)
+        worst_delays(view.step, self.bound, past.ring, past.channel, setting.heads, above, delays)
         return delays
 
 

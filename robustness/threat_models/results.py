@@ -98,7 +98,9 @@ class ToleranceResult(Shown):
     sequence : TimeVaryingGraph or None
         The sequence whose windows the promise is about; ``graph`` is then the union of its steps.
     tau : int or None
-        With a sequence: the bound on delays and on the length of the windows.
+        With a sequence: for how many steps after it was sent a value is used.
+    longest_window : int or None
+        With a sequence: how many steps the windows of a promise may have.
     """
 
     graph: Digraph = field(repr=False)
@@ -111,6 +113,7 @@ class ToleranceResult(Shown):
     no_promise: int | None = None
     sequence: TimeVaryingGraph | None = field(default=None, repr=False, compare=False)
     tau: int | None = None
+    longest_window: int | None = None
 
     def __bool__(self) -> bool:
         raise TypeError("a ToleranceResult has no truth value: compare .guaranteed, .refuted or .standing(f)")

@@ -16,8 +16,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cli.main import robustness
+from robustness.kernels.steps import extremes
 from robustness.simulation import ADVERSARIES, RunVerdict, Scenario, Start, random_start, simulate
-from robustness.simulation.kernels import extremes
 from robustness.simulation.outcome import convergence_rate, groups_of, settled_since, verdict_of
 from robustness.simulation.reference import simulate_plainly
 from robustness.simulation.schedules import schedule_named

@@ -68,11 +68,12 @@ def growth_order(graph: Digraph, need: int, seed_ids: Sequence[int]) -> list[int
     """
     if graph.n == len(seed_ids):
         return []
-    from robustness.decision.bounds.linear_time import adjacency, grow
+    from robustness.decision.bounds.adjacency import adjacency
+    from robustness.kernels.passes import grow
 
     order = np.empty(graph.n, np.int32)
     order[: len(seed_ids)] = seed_ids
-    present, heard = np.zeros(graph.n, np.bool_), np.zeros(graph.n, np.int32)
+    present, heard = np.zeros(graph.n, np.uint8), np.zeros(graph.n, np.int32)
     size = grow(*adjacency(graph)[2:], present, heard, order, len(seed_ids), need)
     return order[len(seed_ids) :].tolist() if size == graph.n else None
 
@@ -102,12 +103,13 @@ def find_growth(graph: Digraph, r: int, s: int = 1, *, steps: Steps | None = Non
     n, need = graph.n, r + s - 1
     if r < 1 or n < 2 or np.count_nonzero(graph.in_degrees < need) > _SEED_LIMIT:
         return None
-    from robustness.decision.bounds.linear_time import adjacency, forget, grow, mother
-    from robustness.decision.bounds.seeds import by_degree, find_seed
+    from robustness.decision.bounds.adjacency import adjacency
+    from robustness.kernels.passes import forget, grow, mother
+    from robustness.kernels.seeds import by_degree, find_seed
 
     arrays = adjacency(graph)
     order = np.empty(n, np.int32)
-    present, heard, barred = np.zeros(n, np.bool_), np.zeros(n, np.int32), np.zeros(n, np.bool_)
+    present, heard, barred = np.zeros(n, np.uint8), np.zeros(n, np.int32), np.zeros(n, np.uint8)
     if r == s == 1:
         order[0] = mother(*arrays[2:])
         size = grow(*arrays[2:], present, heard, order, 1, 1)

@@ -5,7 +5,7 @@ pair for r* + 1 first is what lets exact search concentrate on refuting a single
 
 What is tried, cheapest first: the smallest in-degree; two sets that hear nobody outside (exact for r = 1); cuts of a
 few node orders, peeled to their cores; small sets around nodes of low in-degree; tabu search
-(:mod:`robustness.decision.bounds.tabu`) from these cuts, from random halves and from breadth-first balls.
+(:mod:`robustness.kernels.tabu`) from these cuts, from random halves and from breadth-first balls.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from robustness.digraph import Digraph
 from robustness.limits import Steps
 
 if TYPE_CHECKING:
-    from robustness.decision.bounds.linear_time import Adjacency
+    from robustness.decision.bounds.adjacency import Adjacency
 
 __all__ = ["best_upper_bound", "fewest_exempt", "find_violation"]
 
-#: Up to this many nodes the compiled kernels, and with them numba, are not loaded: exact search is instant there.
+#: Up to this many nodes heuristics are left out: exact search is instant there.
 TINY = 12
 _CLUMP = 24
 #: Passes over the graph that cutting one node order and peeling both sides of eight cuts take, about.
@@ -195,7 +195,7 @@ class _Search:
 
     @classmethod
     def of(cls, graph: Digraph, seed: int, steps: Steps) -> _Search:
-        from robustness.decision.bounds.linear_time import adjacency
+        from robustness.decision.bounds.adjacency import adjacency
 
         return cls(graph, adjacency(graph), np.random.default_rng(seed), steps)
 
@@ -241,7 +241,7 @@ class _Search:
 
     def node_orders(self) -> Iterator[npt.NDArray[np.int32]]:
         """Yield label order, breadth-first order from a far node, and the order of a smooth function on the nodes."""
-        from robustness.decision.bounds.linear_time import breadth_first, smooth
+        from robustness.kernels.passes import breadth_first, smooth
 
         arrays, n = self.arrays, self.graph.n
         if not self.orders:
@@ -250,7 +250,7 @@ class _Search:
         if len(self.orders) < 2:
             order, size = np.empty(n, np.int32), 0
             for start in (int(self.random.integers(n)), -1):
-                seen, size = np.zeros(n, np.bool_), 0
+                seen, size = np.zeros(n, np.uint8), 0
                 for node in (start if start >= 0 else int(order[-1]), *range(n)):
                     size = breadth_first(*arrays[2:], node, order, seen, size)
                     if size == n:
@@ -269,10 +269,10 @@ class _Search:
         self, order: npt.NDArray[np.int32], r: int
     ) -> tuple[tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]] | None, npt.NDArray[np.int8]]:
         """Cut ``order`` where few nodes are exposed and peel both sides; return a pair or None, and the middle cut."""
-        from robustness.decision.bounds.linear_time import both_cores, sweep
+        from robustness.kernels.passes import both_cores, sweep
 
         n = self.graph.n
-        first, second = np.empty(n, np.bool_), np.empty(n, np.bool_)
+        first, second = np.empty(n, np.uint8), np.empty(n, np.uint8)
         cuts = np.ones(min(8, n - 1), np.int64)
         sweep(*self.arrays, order, r, cuts)
         state = np.ones(n, np.int8)
@@ -280,14 +280,14 @@ class _Search:
             state[:] = 1
             state[order[:length]] = 0
             if both_cores(*self.arrays, state, r, first, second):
-                return (first, second), state
+                return (first.view(np.bool_), second.view(np.bool_)), state
         state[:] = 1
         state[order[: int(cuts[len(cuts) // 2])]] = 0
         return None, state
 
     def clumps(self, r: int) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]] | None:
         """Look for a small non-r-reachable set around nodes of low in-degree."""
-        from robustness.decision.bounds.linear_time import clump, core
+        from robustness.kernels.passes import clump, core
 
         n = self.graph.n
         anchors = np.argsort(self.arrays.in_indptr[1:] - self.arrays.in_indptr[:-1], kind="stable").astype(np.int32)
@@ -298,21 +298,21 @@ class _Search:
             tried, size = clump(*self.arrays, anchors[done : done + 2000], min(_CLUMP, n - 1), r, members)
             done += tried
             if size:
-                first = np.zeros(n, np.bool_)
-                first[members[:size]] = True
-                second = ~first
+                first = np.zeros(n, np.uint8)
+                first[members[:size]] = 1
+                second = 1 - first
                 if core(*self.arrays, second, r):
-                    return first, second
+                    return first.view(np.bool_), second.view(np.bool_)
         return None
 
     def tabu(
         self, r: int, s: int, restarts: int, cuts: list[npt.NDArray[np.int8]]
     ) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]] | None:
         """Run tabu searches from the cuts, random halves and balls, each of 20 n steps."""
-        from robustness.decision.bounds.tabu import tabu
+        from robustness.kernels.tabu import tabu
 
         n = self.graph.n
-        first, second = np.empty(n, np.bool_), np.empty(n, np.bool_)
+        first, second = np.empty(n, np.uint8), np.empty(n, np.uint8)
         price = _prices(int(self.graph.in_degrees.max()), r, s)
         # The stop is asked for after every fifty million steps or so.
         degree = self.graph.arc_count // n + 1
@@ -330,7 +330,7 @@ class _Search:
                 self.steps.spend(moves * cost)
                 seed = int(self.random.integers(2**31))
                 if tabu(*self.arrays, state, kind, price, r, s, fee, least, moves, 3, seed, first, second):
-                    return first, second
+                    return first.view(np.bool_), second.view(np.bool_)
         return None
 
     def start(self, attempt: int, kind: npt.NDArray[np.int8], r: int, s: int) -> npt.NDArray[np.int8]:
@@ -347,10 +347,10 @@ class _Search:
 
     def ball(self) -> npt.NDArray[np.int8]:
         """Return a breadth-first ball of random size around a random node against the rest."""
-        from robustness.decision.bounds.linear_time import breadth_first
+        from robustness.kernels.passes import breadth_first
 
         n = self.graph.n
-        order, seen = np.empty(n, np.int32), np.zeros(n, np.bool_)
+        order, seen = np.empty(n, np.int32), np.zeros(n, np.uint8)
         size = breadth_first(*self.arrays[:2], int(self.random.integers(n)), order, seen, 0)
         state = np.ones(n, np.int8)
         state[order[: min(size, n - 1, 1 + int(self.random.integers(max(1, n // 2))))]] = 0

@@ -1,4 +1,4 @@
-"""The compiled inner loop of :mod:`robustness.decision.bounds.local_search`: tabu search over S1, S2 and neither.
+"""The inner loop of :mod:`robustness.decision.bounds.local_search`: tabu search over S1, S2 and neither.
 
 A state puts every node into side 0 (S1), side 1 (S2) or 2 (neither). A node of a side pays a price that grows
 with the number e by which its in-neighbours outside that side exceed r - 1; a node in neither pays a fixed fee. For
@@ -15,23 +15,27 @@ Tried and left: annealing over bipartitions and over three sides (hundreds of ti
 and sparse regular graphs); scanning the moves of all nodes (as good per step on dense graphs, five times slower per
 step on sparse ones); longer tabu tenures.
 
-Memory is linear in the nodes. Importing this module imports numba: import it inside the function that needs it.
+Memory is linear in the nodes.
 """
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numba import njit
 
-from robustness.decision.bounds.linear_time import both_cores
+try:
+    import cython
+except ImportError:
+    from robustness.kernels import uncompiled as cython
+
+if not cython.compiled:
+    from robustness.kernels.passes import both_cores
 
 __all__ = ["tabu"]
 
+_FACTOR, _INCREMENT, _ALL_BITS = 6364136223846793005, 1442695040888963407, 0xFFFFFFFFFFFFFFFF
 
-@njit(nogil=True, cache=True)
-def _tell(in_indptr: Any, in_indices: Any, rise: Any, fall: Any, i: int, side: int, up: int, down: int) -> None:
+
+def _tell(in_indptr, in_indices, rise, fall, i, side, up, down):
     """Add changes of node i's marginal prices to what its in-neighbours would cause by leaving or joining its side."""
     if up != 0 or down != 0:
         for k in range(in_indptr[i], in_indptr[i + 1]):
@@ -39,17 +43,15 @@ def _tell(in_indptr: Any, in_indices: Any, rise: Any, fall: Any, i: int, side: i
             fall[in_indices[k], side] += down
 
 
-@njit(nogil=True, cache=True)
-def _draw(state: int) -> int:
+def _draw(state):
     """Return the next state of Knuth's 64-bit linear congruential generator; ``>> 33`` are its good bits."""
-    return state * 6364136223846793005 + 1442695040888963407
+    return (state * _FACTOR + _INCREMENT) & _ALL_BITS
 
 
-@njit(nogil=True, cache=True)
 def tabu(
-    in_indptr: Any, in_indices: Any, out_indptr: Any, out_indices: Any, side: Any, kind: Any, price: Any,
-    r: int, s: int, fee: int, least: int, steps: int, tenure: int, seed: int, first: Any, second: Any,
-) -> bool:
+    in_indptr, in_indices, out_indptr, out_indices, side, kind, price, r, s, fee, least, steps, tenure, seed,
+    first, second,
+):  # fmt: skip
     """Search ``steps`` moves from ``side`` for a pair that violates (r,s); fill ``first`` and ``second`` with it.
 
     ``kind[i]`` is 1 for an anchor, which never moves. ``price[kind, x + 1]`` is what x in-neighbours outside cost, for
@@ -77,9 +79,11 @@ def tabu(
         if a == 2:
             continue
         x = outside[i] = in_indptr[i + 1] - in_indptr[i] - inside[i, a]
-        p = price[kind[i]]
-        _tell(in_indptr, in_indices, rise, fall, i, a, p[x + 2] - p[x + 1], p[x + 1] - p[x])
-        cost += p[x + 1]
+        t = kind[i]
+        _tell(
+            in_indptr, in_indices, rise, fall, i, a, price[t, x + 2] - price[t, x + 1], price[t, x + 1] - price[t, x]
+        )
+        cost += price[t, x + 1]
         if x >= r:
             exposed[a] += 1
             place[i] = count
@@ -124,11 +128,13 @@ def tabu(
             continue
         # Make it: first the mover's own price, then its hearers'.
         v, a, b = mover, side[mover], goal
-        p = price[0]
         if a < 2:
             x = outside[v]
-            _tell(in_indptr, in_indices, rise, fall, v, a, p[x + 1] - p[x + 2], p[x] - p[x + 1])
-            cost -= p[x + 1]
+            _tell(
+                in_indptr, in_indices, rise, fall, v, a,
+                price[0, x + 1] - price[0, x + 2], price[0, x] - price[0, x + 1],
+            )  # fmt: skip
+            cost -= price[0, x + 1]
             if x >= r:
                 exposed[a] -= 1
                 count -= 1
@@ -139,8 +145,11 @@ def tabu(
         size[b] += 1
         if b < 2:
             x = outside[v] = in_indptr[v + 1] - in_indptr[v] - inside[v, b]
-            _tell(in_indptr, in_indices, rise, fall, v, b, p[x + 2] - p[x + 1], p[x + 1] - p[x])
-            cost += p[x + 1]
+            _tell(
+                in_indptr, in_indices, rise, fall, v, b,
+                price[0, x + 2] - price[0, x + 1], price[0, x + 1] - price[0, x],
+            )  # fmt: skip
+            cost += price[0, x + 1]
             if x >= r:
                 exposed[b] += 1
                 place[v] = count
@@ -153,15 +162,16 @@ def tabu(
             inside[i, b] += 1
             if c == 2 or (c != a and c != b):
                 continue
-            q = price[kind[i]]
+            t = kind[i]
             x = outside[i]
             y = x + 1 if c == a else x - 1
             outside[i] = y
-            cost += q[y + 1] - q[x + 1]
+            cost += price[t, y + 1] - price[t, x + 1]
             _tell(
                 in_indptr, in_indices, rise, fall, i, c,
-                q[y + 2] - q[y + 1] - q[x + 2] + q[x + 1], q[y + 1] - q[y] - q[x + 1] + q[x],
-            )
+                price[t, y + 2] - price[t, y + 1] - price[t, x + 2] + price[t, x + 1],
+                price[t, y + 1] - price[t, y] - price[t, x + 1] + price[t, x],
+            )  # fmt: skip
             if y == r and x < r:
                 exposed[c] += 1
                 place[i] = count
@@ -176,3 +186,7 @@ def tabu(
         until[v] = step + tenure + ((luck >> 33) & 0x7FFFFFFF) % (tenure + 1)
         best = min(best, cost + fee * size[2])
     return False
+
+
+#: The digest of the sources that this machine code was made from.
+built_from = SOURCES.decode() if cython.compiled else ""

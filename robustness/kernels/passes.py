@@ -1,8 +1,8 @@
-"""Compiled passes over the arcs, each linear in them: transposing, peeling, growing, reaching, sweeping.
+"""Passes over the arcs, each linear in them: transposing, peeling, growing, reaching, sweeping.
 
-The graph comes as two pairs of arrays, compressed rows of in-neighbours and of out-neighbours; no matrix is
-ever made, so a million nodes take a few arrays of a million entries. Importing this module imports numba, which
-takes a fifth of a second: import it inside the function that needs it.
+The graph comes as two pairs of arrays, compressed rows of in-neighbours and of out-neighbours: ``indptr`` of int64,
+shape ``(n + 1,)``, and ``indices`` of int32, shape ``(m,)``. No matrix is ever made, so a million nodes take a few
+arrays of a million entries. Sets of nodes are arrays of uint8, shape ``(n,)``, 1 for a member.
 
 The central notion is ``core_r(U)``, the largest non-r-reachable subset of U. It exists and is unique because
 such sets are closed under union (a node of S ∪ T has at most as many in-neighbours outside S ∪ T as outside S),
@@ -12,63 +12,37 @@ non-r-reachable subset of U is never the first of that subset to go.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
-
 import numpy as np
-import numpy.typing as npt
-from numba import njit
 
-from robustness.digraph import Digraph
+try:
+    import cython
+except ImportError:
+    from robustness.kernels import uncompiled as cython
 
 __all__ = [
-    "Adjacency", "adjacency", "articulation", "both_cores", "breadth_first", "clump", "core", "forget", "grow",
-    "mother", "smooth", "sweep",
+    "articulation", "both_cores", "breadth_first", "clump", "core", "forget", "grow",
+    "mother", "smooth", "sweep", "transpose",
 ]
 
-Ids = npt.NDArray[np.int32]
-Mask = npt.NDArray[np.bool_]
 
-
-class Adjacency(NamedTuple):
-    """In-neighbours and out-neighbours as compressed rows: ``indptr`` has shape ``(n + 1,)``, ``indices`` ``(m,)``."""
-
-    in_indptr: npt.NDArray[np.int64]
-    in_indices: Ids
-    out_indptr: npt.NDArray[np.int64]
-    out_indices: Ids
-
-    @property
-    def n(self) -> int:
-        """The number of nodes."""
-        return len(self.in_indptr) - 1
-
-
-def adjacency(graph: Digraph) -> Adjacency:
-    """Return the rows of ``graph`` in both directions. Linear time and memory."""
-    # One writeable-ness for all arrays, so that every kernel is compiled for one signature only.
-    in_indptr, in_indices = graph.in_indptr.copy(), graph.in_indices.copy()
-    return Adjacency(in_indptr, in_indices, *_transpose(in_indptr, in_indices))
-
-
-@njit(nogil=True, cache=True)
-def _transpose(indptr: Any, indices: Any) -> Any:
+def transpose(indptr, indices):
+    """Return the rows of the reversed arcs, ascending."""
     n = len(indptr) - 1
     start = np.zeros(n + 1, np.int64)
-    for j in indices:
-        start[j + 1] += 1
+    for k in range(len(indices)):
+        start[indices[k] + 1] += 1
     for i in range(n):
         start[i + 1] += start[i]
-    place = start.copy()
+    place = np.array(start)
     rows = np.empty(len(indices), np.int32)
     for i in range(n):
         for k in range(indptr[i], indptr[i + 1]):
             rows[place[indices[k]]] = i
             place[indices[k]] += 1
-    return start, rows
+    return np.asarray(start), np.asarray(rows)
 
 
-@njit(nogil=True, cache=True)
-def core(in_indptr: Any, in_indices: Any, out_indptr: Any, out_indices: Any, member: Any, r: int) -> int:
+def core(in_indptr, in_indices, out_indptr, out_indices, member, r):
     """Shrink the set ``member`` to ``core_r`` of it, in place, and return its size."""
     n = len(member)
     outside = np.zeros(n, np.int32)
@@ -101,10 +75,7 @@ def core(in_indptr: Any, in_indices: Any, out_indptr: Any, out_indices: Any, mem
     return size
 
 
-@njit(nogil=True, cache=True)
-def both_cores(
-    in_indptr: Any, in_indices: Any, out_indptr: Any, out_indices: Any, side: Any, r: int, first: Any, second: Any
-) -> bool:
+def both_cores(in_indptr, in_indices, out_indptr, out_indices, side, r, first, second):
     """Try to make a violating pair out of ``side`` (0, 1, or 2 for neither); fill ``first`` and ``second``.
 
     Whenever C = core_r(S1) is nonempty, the best partner of C is core_r(V \\ C); and the same from S2.
@@ -121,8 +92,7 @@ def both_cores(
     return False
 
 
-@njit(nogil=True, cache=True)
-def grow(out_indptr: Any, out_indices: Any, present: Any, heard: Any, order: Any, size: int, need: int) -> int:
+def grow(out_indptr, out_indices, present, heard, order, size, need):
     """Add every node that hears ``need`` present nodes, until none is left; return how many are present.
 
     ``order[:size]`` is the seed; the nodes are appended to ``order`` as they join. ``present`` and ``heard`` are
@@ -144,8 +114,7 @@ def grow(out_indptr: Any, out_indices: Any, present: Any, heard: Any, order: Any
     return size
 
 
-@njit(nogil=True, cache=True)
-def forget(out_indptr: Any, out_indices: Any, present: Any, heard: Any, order: Any, size: int) -> None:
+def forget(out_indptr, out_indices, present, heard, order, size):
     """Undo :func:`grow`."""
     for done in range(size):
         present[order[done]] = False
@@ -153,8 +122,7 @@ def forget(out_indptr: Any, out_indices: Any, present: Any, heard: Any, order: A
             heard[out_indices[k]] = 0
 
 
-@njit(nogil=True, cache=True)
-def breadth_first(indptr: Any, indices: Any, start: int, order: Any, seen: Any, size: int) -> int:
+def breadth_first(indptr, indices, start, order, seen, size):
     """Append to ``order[size:]`` the unseen nodes reached from ``start``, nearest first; return the new size."""
     if seen[start]:
         return size
@@ -174,17 +142,16 @@ def breadth_first(indptr: Any, indices: Any, start: int, order: Any, seen: Any, 
     return size
 
 
-@njit(nogil=True, cache=True)
-def mother(out_indptr: Any, out_indices: Any) -> int:
+def mother(out_indptr, out_indices):
     """Return a node that no node outside its reach can reach: the last start of a search of the whole graph.
 
     Suppose x reaches the last start c. Had x been seen in an earlier search, so had c; no search starts later;
     so x was seen in c's own search, hence c reaches x.
     """
     n = len(out_indptr) - 1
-    seen = np.zeros(n, np.bool_)
+    seen = np.zeros(n, np.uint8)
     order = np.empty(n, np.int32)
-    last, size = 0, int(seen[0])  # zero, but not a literal, which would compile breadth_first a second time
+    last, size = 0, 0
     for start in range(n):
         if not seen[start]:
             last = start
@@ -192,10 +159,7 @@ def mother(out_indptr: Any, out_indices: Any) -> int:
     return last
 
 
-@njit(nogil=True, cache=True)
-def smooth(
-    in_indptr: Any, in_indices: Any, out_indptr: Any, out_indices: Any, values: Any, rounds: int
-) -> None:
+def smooth(in_indptr, in_indices, out_indptr, out_indices, values, rounds):
     """Take ``values`` through ``rounds`` steps of the lazy random walk on links of either direction, in place.
 
     With the part along the constant vector removed after each step, this is power iteration towards the Fiedler
@@ -222,19 +186,16 @@ def smooth(
             values[i] = fresh[i] / largest if largest > 0 else 0.0
 
 
-@njit(nogil=True, cache=True)
-def sweep(
-    in_indptr: Any, in_indices: Any, out_indptr: Any, out_indices: Any, order: Any, r: int, cuts: Any
-) -> None:
+def sweep(in_indptr, in_indices, out_indptr, out_indices, order, r, cuts):
     """Find good places to cut ``order`` in two: fill ``cuts`` with one prefix length per equal range of lengths.
 
     In each range of prefix lengths the one with the fewest nodes that have r or more in-neighbours on the other
     side is kept. One pass: the counts change only along the arcs of the node that changes sides.
     """
     n = len(order)
-    before = np.zeros(n, np.bool_)
+    before = np.zeros(n, np.uint8)
     across = np.zeros(n, np.int32)
-    fewest = np.full(len(cuts), n + 1)
+    fewest = np.full(len(cuts), n + 1, np.int64)
     bad = 0
     for place in range(n - 1):
         node = order[place]
@@ -253,8 +214,7 @@ def sweep(
             cuts[part] = place + 1
 
 
-@njit(nogil=True, cache=True)
-def articulation(indptr: Any, indices: Any) -> int:
+def articulation(indptr, indices):
     """Return a node whose removal disconnects its component of an undirected graph, or -1.
 
     Depth-first search with low points (Hopcroft, Tarjan 1973), without recursion.
@@ -263,7 +223,7 @@ def articulation(indptr: Any, indices: Any) -> int:
     depth = np.full(n, -1, np.int32)
     low = np.empty(n, np.int32)
     parent = np.empty(n, np.int32)
-    after = indptr[:-1].copy()
+    after = np.array(indptr[:n])
     for root in range(n):
         if depth[root] >= 0:
             continue
@@ -284,17 +244,14 @@ def articulation(indptr: Any, indices: Any) -> int:
             if above >= 0:
                 low[above] = min(low[above], low[node])
                 if above != root and low[node] >= depth[above]:
-                    return int(above)
+                    return above
             node = above
         if children > 1:
             return root
     return -1
 
 
-@njit(nogil=True, cache=True)
-def clump(
-    in_indptr: Any, in_indices: Any, out_indptr: Any, out_indices: Any, anchors: Any, limit: int, r: int, members: Any
-) -> tuple[int, int]:
+def clump(in_indptr, in_indices, out_indptr, out_indices, anchors, limit, r, members):
     """Grow a small non-r-reachable set around one anchor after another; return (anchors tried, size found or 0).
 
     A node i of such a set has at least ``d_i - r + 1`` in-neighbours in it. While a member lacks some, the in-neighbour
@@ -303,7 +260,7 @@ def clump(
     """
     n = len(in_indptr) - 1
     inside = np.zeros(n, np.int32)
-    member = np.zeros(n, np.bool_)
+    member = np.zeros(n, np.uint8)
     for tried in range(len(anchors)):
         members[0] = anchors[tried]
         member[anchors[tried]] = True
@@ -336,3 +293,7 @@ def clump(
         if happy == size and size < n:
             return tried + 1, size
     return len(anchors), 0
+
+
+#: The digest of the sources that this machine code was made from.
+built_from = SOURCES.decode() if cython.compiled else ""
