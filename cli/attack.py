@@ -80,8 +80,10 @@ def command(
     the rules and gains that the answer names; 30 undecided, or the gains given lie outside the theory. With --expect: 0
     for that outcome and 10 for the other.
     """
+    from robustness.files.writing import replace_file, require_different_files
     from robustness.simulation.finding import find_attack
 
+    require_different_files([source], [output])
     graph = load_graph(source)
     with ProgressLine(console) as line:
         found = find_attack(
@@ -91,7 +93,7 @@ def command(
     if found.attack is not None:
         _carry_out(found.attack, steps)
         if output is not None:
-            output.write_text(json.dumps(found.attack.as_dict(), indent=1) + "\n", encoding="utf-8")
+            replace_file(output, (json.dumps(found.attack.as_dict(), indent=1) + "\n").encode())
             console.talk(f"wrote {output}")
     if as_json:
         attack = None if found.attack is None else found.attack.as_dict()

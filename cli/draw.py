@@ -73,11 +73,13 @@ def command(
     from robustness.figures.network import draw_to_file
     from robustness.figures.positions import positions_of_file
     from robustness.figures.saving import picture_format
+    from robustness.files.writing import require_different_files
 
     if r is not None and attack_file is not None:
         raise click.UsageError("give one of -r and --attack.")
     if s is not None and r is None:
         raise click.UsageError("-s belongs to -r.")
+    require_different_files([source, attack_file], [output])
     picture_format(output)  # before the work that it might be lost for
     graph = load_graph(source)
     answer: Any = None

@@ -117,6 +117,10 @@ def command(ctx: click.Context, console: Console, /, **options: Any) -> None:
         raise click.UsageError("--over-time says what GRAPH is, and a certificate is about one graph.")
     if options["repeat"] is not None and not options["over_time"]:
         raise click.UsageError("--period belongs to a sequence: give --over-time as well.")
+    from robustness.files.writing import require_different_files
+
+    inputs = [options[name] for name in ("source", "replay", "attack_file", "certificate")]
+    require_different_files(inputs, [options[name] for name in ("save", "plot", "animate")])
     if options["experiment"] is not None:
         code = _experiment(console, options)
     elif options["certificate"] is not None:

@@ -135,6 +135,10 @@ def command(
             raise click.UsageError(f"{option} belongs to a sequence: give --tau as well.")
     if tau is not None and model not in (None, "delayed", "delayed-local"):
         raise click.UsageError(f"theory says nothing about {model} over time: with --tau, delayed or delayed-local.")
+    if output is not None:
+        from robustness.files.writing import require_different_files
+
+        require_different_files([source], [output / "graph.json", output / "sequence.json"])
     network, graph = _load(source, tau, period)
     started = time.perf_counter()
     with ProgressLine(console) as line:
