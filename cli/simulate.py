@@ -327,7 +327,8 @@ def _lines(
         yield f"malicious  {set_text(start.malicious, whole=whole)}, seed {start.seed}: {outcome.verdict.value}" + (
             ", exactly" if outcome.exact else "" if outcome.diverged_at is None else f" at step {outcome.diverged_at}"
         )
-        yield f"spread     {outcome.initial_spread:g} at first, {outcome.spread:g} after {_last(scenario, outcome)} steps" + (
+        last = _last(scenario, outcome)
+        yield f"spread     {outcome.initial_spread:g} at first, {outcome.spread:g} after {last} steps" + (
             "" if outcome.since is None else f", within the tolerance since step {outcome.since}"
         )
         if outcome.diverged_at is not None:
