@@ -327,9 +327,12 @@ def _lines(
         yield f"malicious  {set_text(start.malicious, whole=whole)}, seed {start.seed}: {outcome.verdict.value}" + (
             ", exactly" if outcome.exact else "" if outcome.diverged_at is None else f" at step {outcome.diverged_at}"
         )
-        yield f"spread     {outcome.initial_spread:g} at first, {outcome.spread:g} after {scenario.steps} steps" + (
+        last = _last(scenario, outcome)
+        yield f"spread     {outcome.initial_spread:g} at first, {outcome.spread:g} after {last} steps" + (
             "" if outcome.since is None else f", within the tolerance since step {outcome.since}"
         )
+        if outcome.diverged_at is not None:
+            yield f"gains      {outcome.promise or 'inside the theory: please report'}"
         for value, labels in outcome.groups if outcome.verdict.value != "agreement" else ():
             yield f"group      {set_text(labels, whole=whole)} at {value:g}"
         if outcome.safe is not None:
@@ -340,6 +343,11 @@ def _lines(
             yield f"rate       {outcome.rate:.4g} a step, fitted; proven: {proven}"
     yield f"rule       {scenario.rule}, f = {scenario.f}, {scenario.model}, {scenario.adversary}"
     yield f"schedule   {scenario.schedule}"
+
+
+def _last(scenario: Scenario, outcome: Outcome) -> int:
+    """Return the step that the outcome's numbers are of: the horizon, or where a divergence ended the run."""
+    return scenario.steps if outcome.diverged_at is None else outcome.diverged_at
 
 
 def _headline(overall: str, runs: int) -> str:

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
@@ -34,7 +34,14 @@ from robustness.simulation.motion import Creep, InAbsolutePositions, InTurns
 from robustness.simulation.outcome import Outcome
 from robustness.simulation.run import simulate
 from robustness.simulation.scenario import Scenario, Start
-from robustness.simulation.schedules import AdversarialDelays, AdversarialUpdates, PeriodicUpdates, Schedule
+from robustness.simulation.schedules import (
+    AdversarialDelays,
+    AdversarialUpdates,
+    EveryStep,
+    LatestDelays,
+    PeriodicUpdates,
+    Schedule,
+)
 from robustness.simulation.topology import Topology, as_topology
 from robustness.time_varying import TimeVaryingGraph, check_joint_robustness
 
@@ -227,7 +234,28 @@ def _corollary_2() -> tuple[Case, ...]:
     late = Schedule(delay_rule=AdversarialDelays(1), tau=2)
     scenario = attack.scenario(1000, network=topology, schedule=late)
     cases.append(Case("trapped wheel in halves, tau = 2", "jointly 2-robust only", "split", scenario, attack.start()))
-    return tuple(cases)
+    return (*cases, *_late_halves())
+
+
+def _late_halves() -> Iterator[Case]:
+    """Yield K_5 in two halves, jointly 3-robust over l = 2 steps: links remembered for longer than tau are lost."""
+    halves = []
+    for missing in ([(0, 3), (1, 2)], [(0, 2), (1, 3)]):
+        half = nx.complete_graph(5)
+        half.remove_edges_from(missing)
+        halves.append(half)
+    sequence = TimeVaryingGraph(halves, period=2)
+    window = check_joint_robustness(sequence, 3).window
+    start = Start([4], [0, 0, 100, 100, 50], [0] * 5)
+    liar = Alternating(0.0, 100.0, (0, 1), (2, 3))
+    for late, tau, verdict in ((2, 2, "split"), (1, 2, "agreement"), (2, 3, "agreement")):
+        scenario = Scenario(
+            sequence, 1, adversary=liar, schedule=Schedule(EveryStep(), LatestDelays(late), tau=tau), steps=2000,
+            groups=((0, 1), (2, 3)),
+        )  # fmt: skip
+        sign = "<=" if verdict == "agreement" else ">"
+        reading = f"jointly 3-robust over l = {window} <= tau steps, (l-1) + (g-1) + b = {1 + late} {sign} tau"
+        yield Case(f"K_5 in halves, all delays {late}, tau = {tau}", reading, verdict, scenario, start)
 
 
 def _about(runs: Callable[[], tuple[GainRun, ...]]) -> Callable[[], tuple[Case, ...]]:

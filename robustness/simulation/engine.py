@@ -186,8 +186,6 @@ class Batch:
 
     def _trial(self, p: Floats, q: Floats, sent: Floats) -> Floats:
         """Return the positions one step later if everybody updated now and heard ``sent`` at once."""
-        from robustness.kernels.steps import advance
-
         graph = self.topology.union
         arcs = graph.arc_count
         at_once = Hearing(
@@ -199,21 +197,27 @@ class Batch:
         if self.fleet.rule.update is not None:
             advance_by(self.fleet.rule.update, graph, 0, 0, at_once, nothing, states)
         else:
-            advance(0, len(p), *self._kernel_arguments(0, Schedule(), at_once, nothing, states))
+            _advance(0, len(p), *self._kernel_arguments(0, Schedule(), at_once, nothing, states))
         return states[2]
 
 
 def _run_in_parts(pool: Executor | None, bounds: list[int], arguments: tuple[Any, ...]) -> None:
     """Advance the runs between consecutive bounds, each part in its own thread; runs are independent."""
-    from robustness.kernels.steps import advance
-
     parts = list(pairwise(bounds))
     if pool is None or len(parts) == 1:
         for part in parts:
-            advance(*part, *arguments)
+            _advance(*part, *arguments)
         return
-    for done in [pool.submit(advance, *part, *arguments) for part in parts]:
+    for done in [pool.submit(_advance, *part, *arguments) for part in parts]:
         done.result()
+
+
+def _advance(*arguments: Any) -> None:
+    """Call the kernel. Where it runs as plain Python, numpy would warn of an overflow, which is found afterwards."""
+    from robustness.kernels.steps import advance
+
+    with np.errstate(over="ignore", invalid="ignore"):
+        advance(*arguments)
 
 
 def _states(rows: list[tuple[float, ...]], shape: tuple[int, int], what: str) -> Floats:

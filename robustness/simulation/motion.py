@@ -1,4 +1,4 @@
-"""Malicious motions of named experiments: those of the source paper's example, and pushes that exploit small gains."""
+"""Malicious motions of named experiments and of the audit: those of the source paper's example, and some of ours."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from robustness.simulation.adversaries.protocol import Adversary, Move, View
 
-__all__ = ["Creep", "InAbsolutePositions", "InTurns", "Push"]
+__all__ = ["Creep", "InAbsolutePositions", "InTurns", "Push", "Withholding"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,3 +101,25 @@ class Push:
         ahead = view.q[:, setting.heads] > 0
         late = np.where(ahead == is_even, 0, 1) if view.step >= 0 else np.zeros(ahead.shape, dtype=np.int64)
         return Move(sent=sent, delays=np.where(setting.from_malicious, late, 0))
+
+
+@dataclass(frozen=True, slots=True)
+class Withholding:
+    """Does what another adversary does, but keeps single messages back at random: lying and silence combined.
+
+    Parameters
+    ----------
+    adversary : Adversary
+    probability : float
+        Of keeping back each message, drawn from the run's own seed.
+    """
+
+    adversary: Adversary
+    probability: float = 0.5
+
+    def play(self, view: View) -> Move:
+        """Return the other adversary's move with some of its messages withheld."""
+        setting, move = view.setting, self.adversary.play(view)
+        draws = setting.draws.uniform("withholding", view.step, setting.graph.arc_count)
+        silent = setting.from_malicious & (draws < self.probability)
+        return Move(move.sent, move.positions, move.told, silent, move.delays)

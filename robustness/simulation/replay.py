@@ -33,11 +33,11 @@ _KINDS: Mapping[str, type] = MappingProxyType(
         for kind in (
             Scenario, Start, Topology, schedules.Schedule, schedules.EveryStep, schedules.PeriodicUpdates,
             schedules.RandomUpdates, schedules.AdversarialUpdates, schedules.NoDelays, schedules.ConstantDelays,
-            schedules.PeriodicDelays, schedules.RandomDelays, schedules.AdversarialDelays, adversaries.Alternating,
-            adversaries.Constant,
+            schedules.PeriodicDelays, schedules.RandomDelays, schedules.AdversarialDelays, schedules.LatestDelays,
+            adversaries.Alternating, adversaries.Constant,
             adversaries.Crash, adversaries.ExtremeValue, adversaries.Greedy, adversaries.Liar, adversaries.Noise,
             adversaries.Omission, adversaries.Ramp, adversaries.Sine, adversaries.TwoFace, motion.Creep,
-            motion.InAbsolutePositions, motion.InTurns, motion.Push,
+            motion.InAbsolutePositions, motion.InTurns, motion.Push, motion.Withholding,
         )
     }
 )  # fmt: skip

@@ -30,6 +30,7 @@ __all__ = [
     "ConstantDelays",
     "DelayRule",
     "EveryStep",
+    "LatestDelays",
     "NoDelays",
     "Past",
     "PeriodicDelays",
@@ -321,6 +322,25 @@ class AdversarialDelays:
         above = (view.p > (low + high) / 2).view(np.uint8)
         worst_delays(view.step, self.bound, past.ring, past.channel, setting.heads, above, delays)
         return delays
+
+
+@dataclass(frozen=True, slots=True)
+class LatestDelays:
+    """Every value arrives ``bound`` steps late, unless an adversary's move says otherwise."""
+
+    bound: int = 2
+
+    def __post_init__(self) -> None:
+        _require_nonnegative("the bound on delays", self.bound)
+
+    @property
+    def adversarial(self) -> bool:
+        """True."""
+        return True
+
+    def delays(self, view: View, past: Past) -> Steps:
+        """Return the bound for every arc."""
+        return np.full((1, view.setting.graph.arc_count), self.bound, dtype=np.int64)
 
 
 @dataclass(frozen=True, slots=True)

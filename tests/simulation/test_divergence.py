@@ -168,6 +168,7 @@ class TestCommand:
         assert code == 10
         assert told.startswith("divergence:")
         assert "divergence at step" in told
+        assert "gains      outside the gains of the theory at node" in told
         code, document = self.run(tmp_path, *arguments, "--json")
         assert code == 10
         read = json.loads(document)
