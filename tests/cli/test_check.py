@@ -203,7 +203,8 @@ class TestTalk:
         path = str(DATA / "square.graphml")
         outcome = CliRunner().invoke(robustness, ["check", path])
         assert outcome.exit_code == 0
-        assert outcome.stderr == "warning: GraphML reads every label as text; node-link JSON (.json) keeps everything\n"
+        said = "read as: undirected, 4 nodes, 4 links; GraphML reads every label as text"
+        assert outcome.stderr == f"warning: {said}; node-link JSON (.json) keeps everything\n"
         assert "warning" not in outcome.stdout
 
     @pytest.mark.parametrize("arguments", [["-q", "check"], ["check", "-q"]])
