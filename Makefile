@@ -1,4 +1,5 @@
-# Everything a developer or a new user types. Needs Python >= 3.11 with pip and venv, and make; nothing else.
+# Everything a developer or a new user types. Needs Python >= 3.11 with pip and venv, and make; with a C compiler the
+# kernels become machine code, without one they run as plain Python.
 #
 #   make demo    decide the robustness of a real network exactly, with a certificate, and check it independently
 #   make test    the fast tests and every example in a docstring
@@ -34,13 +35,13 @@ help: ## list the targets
 
 # --no-deps: the lock is whole, and a resolver that looked further would trip over any release newer than the lock.
 # `pip check` then proves that nothing was missing from it.
-$(READY): $(LOCK) pyproject.toml
+$(READY): $(LOCK) pyproject.toml setup.py $(wildcard robustness/kernels/*.py robustness/kernels/*.pxd)
 	@test -n "$(PYTHON)" || { echo "Python 3.11 or newer is needed and none was found: make PYTHON=/path/to/python" >&2; exit 3; }
 	@rm -f $@
 	$(BIN)/python -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV) || \
 		{ $(PYTHON) -m venv --clear --without-pip $(VENV) && $(PYTHON) -m pip --python $(BIN)/python install --quiet pip; }
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --no-deps -r $(LOCK)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --config-settings editable_mode=compat -e .
 	$(BIN)/python -m pip check --disable-pip-version-check >/dev/null
 	@touch $@
 
@@ -80,17 +81,19 @@ bench-quick: $(READY) ## the benchmark in a minute or two
 	$(BIN)/python -m benchmarks --quick
 
 wheel: $(READY) ## the wheel, into build/dist
+	rm -rf $(BUILD)/lib*
 	$(BIN)/python -m pip wheel --quiet --no-deps --no-build-isolation --wheel-dir $(BUILD)/dist .
 
 lock: ## resolve requirements.lock anew (the only target that does not use it)
 	$(PYTHON) -m venv $(BUILD)/lock
 	$(BUILD)/lock/bin/python -m pip install --quiet --disable-pip-version-check pip-tools
-	cp pyproject.toml README.md LICENSE $(BUILD)/lock/
+	cp pyproject.toml setup.py README.md LICENSE $(BUILD)/lock/
+	mkdir -p $(BUILD)/lock/robustness && cp -r robustness/kernels $(BUILD)/lock/robustness/
 	cd $(BUILD)/lock && bin/pip-compile --quiet --upgrade --all-extras --generate-hashes --allow-unsafe --strip-extras --no-header \
 		--no-annotate --no-emit-options --no-emit-index-url --no-emit-trusted-host --no-emit-find-links -o resolved.txt pyproject.toml
 	{ echo "# Every package of every extra, pinned with hashes for all platforms. Written by 'make lock'; do not edit."; \
-		cat $(BUILD)/lock/resolved.txt; } > $(LOCK)
+		grep -v "^#" $(BUILD)/lock/resolved.txt; } > $(LOCK)
 
 clean: ## what the other targets made, but not the virtual environment
-	rm -rf $(BUILD) dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage .coverage.* *.egg-info
+	rm -rf $(BUILD) dist robustness/kernels/*.so .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage .coverage.* *.egg-info
 	find robustness certificates cli tests benchmarks examples docs -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -121,7 +121,7 @@ def _figures(options: argparse.Namespace) -> list[str]:
 
 def machine() -> dict[str, Any]:
     """Return what times depend on."""
-    packages = ("ortools", "numba", "numpy", "networkx")
+    packages = ("ortools", "numpy", "networkx")
     return {
         "python": platform.python_version(),
         "system": f"{platform.system()} {platform.machine()}",

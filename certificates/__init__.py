@@ -13,6 +13,7 @@ from certificates.errors import (
     RejectedCertificate,
 )
 from certificates.joint import VerifiedJointClaim, verify_joint
+from certificates.questions import Question, comparison, verify_any
 from certificates.tolerance import VerifiedToleranceClaim, verify_tolerance
 from certificates.verification import VerifiedClaim, verify
 
@@ -21,11 +22,14 @@ __all__ = [
     "MalformedCertificate",
     "MalformedGraph",
     "Misuse",
+    "Question",
     "RejectedCertificate",
     "VerifiedClaim",
     "VerifiedJointClaim",
     "VerifiedToleranceClaim",
+    "comparison",
     "verify",
+    "verify_any",
     "verify_joint",
     "verify_tolerance",
 ]

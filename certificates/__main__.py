@@ -1,7 +1,9 @@
 """``python -m certificates verify GRAPH CERTIFICATE``: the kernel on a bare Python.
 
-``verify-joint SEQUENCE CERTIFICATE`` does the same for joint robustness of a sequence of graphs, and
-``verify-tolerance GRAPH CERTIFICATE`` for what f malicious nodes can do.
+It takes certificates of every kind; ``verify-joint SEQUENCE CERTIFICATE`` takes those of joint robustness alone, and
+``verify-tolerance GRAPH CERTIFICATE`` those of what f malicious nodes can do. Start it as ``python -I -m
+certificates``: isolated, Python does not look into the current folder, where a file named ``json.py`` could stand in
+for the library.
 Exit codes: 0 the certificate proves its claim (and the claim answers the question asked); 10 it does not; 3 a file is
 unreadable or malformed; 2 usage.
 """
@@ -10,65 +12,72 @@ from __future__ import annotations
 
 import argparse
 import sys
+from dataclasses import fields
 from pathlib import Path
 
+from certificates.envelope import MAX_CERTIFICATE_BYTES
 from certificates.errors import MalformedCertificate, RejectedCertificate
 from certificates.graph import MAX_GRAPH_BYTES
-from certificates.joint import MAX_SEQUENCE_BYTES, VerifiedJointClaim, verify_joint
-from certificates.tolerance import VerifiedToleranceClaim, verify_tolerance
-from certificates.verification import MAX_CERTIFICATE_BYTES, VerifiedClaim, verify
+from certificates.joint import MAX_SEQUENCE_BYTES, verify_joint
+from certificates.questions import Claim, Question, comparison, verify_any
+from certificates.tolerance import verify_tolerance
 
 __all__ = ["main", "read_at_most"]
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Verify one certificate, print the claim proved, and return the exit code."""
+    """Verify one certificate, compare its claim with the question, print it, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m certificates", description="Verify a robustness certificate.")
     commands = parser.add_subparsers(dest="command", required=True)
-    one = commands.add_parser("verify", help="verify CERTIFICATE for GRAPH")
-    one.add_argument("graph", type=Path, help="canonical graph, or node-link JSON")
+    whole = commands.add_parser("verify", help="verify CERTIFICATE, of any kind, for GRAPH (a sequence if it is joint)")
+    whole.add_argument("subject", metavar="graph", type=Path, help="canonical graph or sequence, or node-link JSON")
     joint = commands.add_parser("verify-joint", help="verify the joint CERTIFICATE for SEQUENCE")
-    joint.add_argument("sequence", type=Path, help="canonical sequence")
+    joint.add_argument("subject", metavar="sequence", type=Path, help="canonical sequence")
     tolerance = commands.add_parser("verify-tolerance", help="verify the tolerance CERTIFICATE for GRAPH")
-    tolerance.add_argument("graph", type=Path, help="canonical graph, or node-link JSON")
-    tolerance.add_argument("certificate", type=Path)
-    tolerance.add_argument("--expect", choices=["apart", "together"], help="the verdict that must be proven")
-    tolerance.add_argument("-f", type=int, help="the f that the claim must be about")
-    for each in (one, joint):
+    tolerance.add_argument("subject", metavar="graph", type=Path, help="canonical graph, or node-link JSON")
+    for each in (whole, joint, tolerance):
         each.add_argument("certificate", type=Path)
-        each.add_argument("--expect", choices=["robust", "not-robust"], help="the verdict that must be proven")
-        each.add_argument("-r", type=int, help="the r that the claim must be about")
-        each.add_argument("-s", type=int, help="the s that the claim must be about")
-    joint.add_argument("--window", type=int, help="the number of steps that the claim must be about")
-    question = parser.parse_args(arguments)
+        verdicts = [] if each is tolerance else ["robust", "not-robust"]
+        verdicts += [] if each is joint else ["apart", "together"]
+        each.add_argument("--expect", dest="verdict", choices=verdicts, help="the verdict that must be proven")
+        if each is not tolerance:
+            each.add_argument("-r", type=int, help="the r that the claim must be about")
+            each.add_argument("-s", type=int, help="the s that the claim must be about")
+            each.add_argument("--window", type=int, help="the number of steps that the claim must be about")
+        if each is not joint:
+            each.add_argument("-f", type=int, help="the f that the claim must be about")
+            each.add_argument("--faces", type=int, choices=[1, 2], help="how many faces a malicious node has")
+            each.add_argument("--bound", choices=["total", "local"], help="f malicious nodes in all or around each")
+    asked = vars(parser.parse_args(arguments))
+    question = Question(**{each.name: asked.get(each.name) for each in fields(Question)})
+    if question.gap():
+        parser.error(question.gap())
     try:
-        claim = _verify(question)
+        claim = _verify(asked["command"], asked["subject"], asked["certificate"])
     except OSError as problem:
         return _fail(3, f"error: cannot read {problem.filename}: {problem.strerror}")
     except MalformedCertificate as problem:
         return _fail(3, f"malformed: {problem}")
     except RejectedCertificate as problem:
         return _fail(10, f"rejected: {problem}")
-    sys.stdout.write(f"verified: {claim}\n")
-    asked = {"verdict": question.expect}
-    asked |= {name: value for name, value in vars(question).items() if name in ("r", "s", "window", "f")}
-    wrong = [f"{name} {value}" for name, value in asked.items() if value not in (None, getattr(claim, name))]
-    if wrong:
-        return _fail(10, f"rejected: the claim proved is not the one asked for ({', '.join(wrong)})")
+    answers, how = comparison(claim, question)
+    if not answers:
+        return _fail(10, f"rejected: {how}; proved is that {claim}")
+    sys.stdout.write(f"verified: {claim}; {how}\n")
     return 0
 
 
-def _verify(question: argparse.Namespace) -> VerifiedClaim | VerifiedJointClaim | VerifiedToleranceClaim:
+def _verify(command: str, subject: Path, certificate: Path) -> Claim:
     """Return the claim that the files prove, read in the order of the command line."""
-    if question.command == "verify-joint":
-        sequence = read_at_most(question.sequence, MAX_SEQUENCE_BYTES)
-        return verify_joint(sequence, read_at_most(question.certificate, MAX_CERTIFICATE_BYTES))
-    if question.command == "verify-tolerance":
-        graph = read_at_most(question.graph, MAX_GRAPH_BYTES)
-        return verify_tolerance(graph, read_at_most(question.certificate, MAX_CERTIFICATE_BYTES))
-    return verify(
-        read_at_most(question.graph, MAX_GRAPH_BYTES), read_at_most(question.certificate, MAX_CERTIFICATE_BYTES)
-    )
+    first = read_at_most(subject, max(MAX_GRAPH_BYTES, MAX_SEQUENCE_BYTES))
+    second = read_at_most(certificate, MAX_CERTIFICATE_BYTES)
+    match command:
+        case "verify-joint":
+            return verify_joint(first, second)
+        case "verify-tolerance":
+            return verify_tolerance(first, second)
+        case _:
+            return verify_any(first, second)
 
 
 def _fail(code: int, message: str) -> int:

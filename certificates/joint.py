@@ -15,10 +15,11 @@ from dataclasses import dataclass
 from itertools import accumulate, pairwise
 from typing import Any
 
+from certificates.envelope import MAX_CERTIFICATE_BYTES, kind_of, require_keys, shown, split_header
 from certificates.errors import CertificateError, MalformedCertificate, MalformedGraph, Misuse, RejectedCertificate
 from certificates.graph import Label, _labels, digest, encode_graph, label_key
 from certificates.strict_json import parse
-from certificates.verification import MAX_CERTIFICATE_BYTES, VerifiedClaim, _keys, _kind, _shown, _split, verify
+from certificates.verification import VerifiedClaim, verify
 
 __all__ = [
     "FORMAT",
@@ -106,31 +107,31 @@ def verify_joint(sequence_bytes: bytes, certificate_bytes: bytes) -> VerifiedJoi
         raise Misuse("verify_joint takes two bytes objects: the sequence and the certificate")
     if len(certificate_bytes) > MAX_CERTIFICATE_BYTES:
         raise MalformedCertificate(f"a certificate has at most {MAX_CERTIFICATE_BYTES} bytes")
-    header, body = _split(certificate_bytes)
+    header, body = split_header(certificate_bytes)
     document = parse(header, MalformedCertificate, "the certificate")
-    document = _keys(document, "the certificate", "format sequence claim evidence")
+    document = require_keys(document, "the certificate", "format sequence claim evidence")
     if document["format"] != FORMAT:
-        raise MalformedCertificate(f"the format is {FORMAT!r}, not {_shown(document['format'])}")
-    claim = _keys(document["claim"], "the claim", "property r s window verdict")
+        raise MalformedCertificate(f"the format is {FORMAT!r}, not {shown(document['format'])}")
+    claim = require_keys(document["claim"], "the claim", "property r s window verdict")
     sequence = _decode_sequence(sequence_bytes)
     if document["sequence"] != sequence.sha256:
         raise RejectedCertificate(f"the certificate is about another sequence: this one has SHA-256 {sequence.sha256}")
     check = _Check(sequence, *_claim_numbers(claim, len(sequence.labels)))
     evidence, verdict, start = document["evidence"], claim["verdict"], None
-    kind = _kind(evidence)
+    kind = kind_of(evidence)
     match verdict, kind:
         case "robust", "windows":
-            proven = check.windows(_keys(evidence, "the evidence", "kind unions lengths"), body)
+            proven = check.windows(require_keys(evidence, "the evidence", "kind unions lengths"), body)
         case "not-robust", "violation":
-            start = _keys(evidence, "the evidence", "kind start")["start"]
+            start = require_keys(evidence, "the evidence", "kind start")["start"]
             proven = check.violation(start, body)
         case "not-robust", "no-window":
-            _keys(evidence, "the evidence", "kind")
+            require_keys(evidence, "the evidence", "kind")
             proven = check.no_window(body)
         case "robust" | "not-robust", _:
-            raise MalformedCertificate(f"there is no evidence of kind {_shown(kind)} for the verdict {verdict!r}")
+            raise MalformedCertificate(f"there is no evidence of kind {shown(kind)} for the verdict {verdict!r}")
         case _:
-            raise MalformedCertificate(f"a verdict is 'robust' or 'not-robust', not {_shown(verdict)}")
+            raise MalformedCertificate(f"a verdict is 'robust' or 'not-robust', not {shown(verdict)}")
     return VerifiedJointClaim(
         verdict,
         check.r,
@@ -194,7 +195,7 @@ def _decode_sequence(data: bytes) -> _Sequence:
     if not isinstance(document, dict) or set(document) != {"format", "labels", "period", "steps"}:
         raise MalformedGraph("a sequence is an object with exactly the keys format, labels, period and steps")
     if document["format"] != SEQUENCE_FORMAT:
-        raise MalformedGraph(f"the format of a sequence is {SEQUENCE_FORMAT!r}, not {_shown(document['format'])}")
+        raise MalformedGraph(f"the format of a sequence is {SEQUENCE_FORMAT!r}, not {shown(document['format'])}")
     labels = tuple(_labels(document["labels"]))
     if any(not a < b for a, b in pairwise(map(label_key, labels))):
         raise MalformedGraph("labels stand in strictly ascending canonical order")
@@ -229,7 +230,7 @@ def _arcs_of_step(row: Any, n: int) -> tuple[_Arc, ...]:
 def _claim_numbers(claim: dict[str, Any], n: int) -> tuple[int, int, int]:
     """Return r, s and the window length of a claim in range."""
     if claim["property"] != "jointly-rs-robust":
-        raise MalformedCertificate(f"the property is 'jointly-rs-robust', not {_shown(claim['property'])}")
+        raise MalformedCertificate(f"the property is 'jointly-rs-robust', not {shown(claim['property'])}")
     r, s, length = (claim[name] for name in ("r", "s", "window"))
     if not all(type(value) is int and 1 <= value <= MAX_VALUE for value in (r, s, length)):
         raise MalformedCertificate(f"r, s and window are integers in 1..{MAX_VALUE}")

@@ -15,10 +15,11 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
+from certificates.envelope import MAX_CERTIFICATE_BYTES, id_set, kind_of, require_keys, shown, split_header
 from certificates.errors import MalformedCertificate, Misuse, RejectedCertificate
 from certificates.graph import CanonicalGraph, decode_graph, encode_graph
 from certificates.strict_json import parse
-from certificates.verification import MAX_CERTIFICATE_BYTES, _id_set, _keys, _kind, _shown, _split, verify
+from certificates.verification import verify
 
 __all__ = ["FORMAT", "VerifiedToleranceClaim", "verify_tolerance", "without"]
 
@@ -48,10 +49,11 @@ class VerifiedToleranceClaim:
     def __str__(self) -> str:
         kind = "trap" if self.faces == 2 else "violation"
         word = "has a" if self.verdict == "apart" else "has no"
+        where = "in total" if self.bound == "total" else "locally"
         return (
             f"the graph with {self.nodes} nodes, {self.arcs} arcs and SHA-256 {self.sha256} {word} "
-            f"{kind} for f = {self.f} in {self.bound} (evidence: {self.evidence})"
-        ).replace("in local", "locally")
+            f"{kind} for f = {self.f} {where} (evidence: {self.evidence})"
+        )
 
 
 def verify_tolerance(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedToleranceClaim:
@@ -77,30 +79,30 @@ def verify_tolerance(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedTo
         raise Misuse("verify_tolerance takes two bytes objects: the graph and the certificate")
     if len(certificate_bytes) > MAX_CERTIFICATE_BYTES:
         raise MalformedCertificate(f"a certificate has at most {MAX_CERTIFICATE_BYTES} bytes")
-    header, body = _split(certificate_bytes)
+    header, body = split_header(certificate_bytes)
     document = parse(header, MalformedCertificate, "the certificate")
-    document = _keys(document, "the certificate", "format graph claim evidence")
+    document = require_keys(document, "the certificate", "format graph claim evidence")
     if document["format"] != FORMAT:
-        raise MalformedCertificate(f"the format is {FORMAT!r}, not {_shown(document['format'])}")
-    f, faces, bound, verdict = _claim(_keys(document["claim"], "the claim", "f faces bound verdict"))
+        raise MalformedCertificate(f"the format is {FORMAT!r}, not {shown(document['format'])}")
+    f, faces, bound, verdict = _claim(require_keys(document["claim"], "the claim", "f faces bound verdict"))
     graph = decode_graph(graph_bytes)
     if document["graph"] != graph.sha256:
         raise RejectedCertificate(f"the certificate is about another graph: this one has SHA-256 {graph.sha256}")
-    evidence, kind = document["evidence"], _kind(document["evidence"])
+    evidence, kind = document["evidence"], kind_of(document["evidence"])
     used = tree_nodes = 0
     match verdict, kind:
         case "apart", "sets":
-            _check_sets(graph, f, faces, bound, _keys(evidence, "the evidence", "kind M S1 S2"))
+            _check_sets(graph, f, faces, bound, require_keys(evidence, "the evidence", "kind M S1 S2"))
             if body:
                 raise MalformedCertificate(f"{len(body)} bytes follow the header, but sets have no body")
         case "together", "robust":
-            _keys(evidence, "the evidence", "kind")
+            require_keys(evidence, "the evidence", "kind")
             used, tree_nodes = 1, _check_robust(encode(graph), body, 2 * f + 1)
         case "together", "removals":
-            lengths = _keys(evidence, "the evidence", "kind lengths")["lengths"]
+            lengths = require_keys(evidence, "the evidence", "kind lengths")["lengths"]
             used, tree_nodes = _check_removals(graph, f, (faces, bound), lengths, body)
         case _:
-            raise MalformedCertificate(f"there is no evidence of kind {_shown(kind)} for the verdict {verdict!r}")
+            raise MalformedCertificate(f"there is no evidence of kind {shown(kind)} for the verdict {verdict!r}")
     return VerifiedToleranceClaim(
         verdict, f, faces, bound, kind, graph.sha256, graph.n, graph.arc_count, used, tree_nodes
     )
@@ -113,15 +115,15 @@ def _claim(claim: dict[str, Any]) -> tuple[int, int, str, str]:
     if type(faces) is not int or faces not in (1, 2):
         raise MalformedCertificate("faces is 1 or 2")
     if bound not in ("total", "local"):
-        raise MalformedCertificate(f"a bound is 'total' or 'local', not {_shown(bound)}")
+        raise MalformedCertificate(f"a bound is 'total' or 'local', not {shown(bound)}")
     if verdict not in ("apart", "together"):
-        raise MalformedCertificate(f"a verdict is 'apart' or 'together', not {_shown(verdict)}")
+        raise MalformedCertificate(f"a verdict is 'apart' or 'together', not {shown(verdict)}")
     return f, faces, bound, verdict
 
 
 def _check_sets(graph: CanonicalGraph, f: int, faces: int, bound: str, evidence: dict[str, Any]) -> None:
     """The definition, clause by clause."""
-    M, S1, S2 = (set(_id_set(evidence[name], graph.n, name)) for name in ("M", "S1", "S2"))
+    M, S1, S2 = (set(id_set(evidence[name], graph.n, name)) for name in ("M", "S1", "S2"))
     if S1 & S2 or not S1 - M or not S2 - M:
         raise RejectedCertificate("S1 and S2 are not disjoint with a normal node in each")
     if faces == 2 and M & (S1 | S2):

@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 from certificates.derivation import Derivation
+from certificates.envelope import MAX_CERTIFICATE_BYTES, id_list, id_set, kind_of, require_keys, shown, split_header
 from certificates.errors import MalformedCertificate, Misuse, RejectedCertificate
 from certificates.graph import CanonicalGraph, decode_graph
 from certificates.refutation import check_refutation
 from certificates.strict_json import parse
 
-__all__ = ["FORMAT", "MAX_CERTIFICATE_BYTES", "VerifiedClaim", "verify"]
+__all__ = ["FORMAT", "VerifiedClaim", "verify"]
 
 FORMAT = "robustness/certificate/1"
-
-#: Bytes of a certificate that are read at most.
-MAX_CERTIFICATE_BYTES = 2**30
-_MAX_HEADER_BYTES = 2**26
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,72 +62,46 @@ def verify(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedClaim:
         raise Misuse("verify takes two bytes objects: the graph and the certificate")
     if len(certificate_bytes) > MAX_CERTIFICATE_BYTES:
         raise MalformedCertificate(f"a certificate has at most {MAX_CERTIFICATE_BYTES} bytes")
-    header, body = _split(certificate_bytes)
+    header, body = split_header(certificate_bytes)
     document = parse(header, MalformedCertificate, "the certificate")
-    document = _keys(document, "the certificate", "format graph claim evidence")
+    document = require_keys(document, "the certificate", "format graph claim evidence")
     if document["format"] != FORMAT:
-        raise MalformedCertificate(f"the format is {FORMAT!r}, not {_shown(document['format'])}")
-    claim = _keys(document["claim"], "the claim", "property r s verdict")
+        raise MalformedCertificate(f"the format is {FORMAT!r}, not {shown(document['format'])}")
+    claim = require_keys(document["claim"], "the claim", "property r s verdict")
     evidence = document["evidence"]
     graph = decode_graph(graph_bytes)
     if document["graph"] != graph.sha256:
         raise RejectedCertificate(f"the certificate is about another graph: this one has SHA-256 {graph.sha256}")
     r, s = _claim_numbers(claim, graph.n)
-    kind, verdict = _kind(evidence), claim["verdict"]
+    kind, verdict = kind_of(evidence), claim["verdict"]
     if verdict == "robust" and r > (graph.n + 1) // 2:
         # Lemma 2; on one node, where no pair exists, it is the convention.
         raise RejectedCertificate(f"no graph on {graph.n} node(s) is ({r},{s})-robust: r is at most ceil(n/2)")
     tree_nodes = 0
     match verdict, kind:
         case "not-robust", "violation":
-            _check_violation(graph, r, s, _keys(evidence, "the evidence", "kind S1 S2"))
+            _check_violation(graph, r, s, require_keys(evidence, "the evidence", "kind S1 S2"))
         case "robust", "degree" | "refutation":
-            tree_nodes = _check_direct(graph, r, s, _keys(evidence, "the evidence", "kind"), body)
+            tree_nodes = _check_direct(graph, r, s, require_keys(evidence, "the evidence", "kind"), body)
         case "robust", "growth":
-            tree_nodes = _check_growth(graph, r, s, _keys(evidence, "the evidence", "kind seed order proof"), body)
+            grown = require_keys(evidence, "the evidence", "kind seed order proof")
+            tree_nodes = _check_growth(graph, r, s, grown, body)
         case "robust", "derivation":
             keys = "kind seed proof steps ids"
-            tree_nodes = _check_derivation(graph, r, s, _keys(evidence, "the evidence", keys), body)
+            tree_nodes = _check_derivation(graph, r, s, require_keys(evidence, "the evidence", keys), body)
         case "robust" | "not-robust", _:
-            raise MalformedCertificate(f"there is no evidence of kind {_shown(kind)} for the verdict {verdict!r}")
+            raise MalformedCertificate(f"there is no evidence of kind {shown(kind)} for the verdict {verdict!r}")
         case _:
-            raise MalformedCertificate(f"a verdict is 'robust' or 'not-robust', not {_shown(verdict)}")
+            raise MalformedCertificate(f"a verdict is 'robust' or 'not-robust', not {shown(verdict)}")
     if kind == "violation" and body:
         raise MalformedCertificate(f"{len(body)} bytes follow the header, but evidence of kind 'violation' has no body")
     return VerifiedClaim(verdict, r, s, kind, graph.sha256, graph.n, graph.arc_count, tree_nodes)
 
 
-def _split(data: bytes) -> tuple[bytes, bytes]:
-    """Return header and body: the first line, and all that follows it."""
-    end = data.find(b"\n", 0, _MAX_HEADER_BYTES)
-    if end < 0:
-        raise MalformedCertificate("a certificate begins with one line of JSON that ends with a newline")
-    return data[:end], data[end + 1 :]
-
-
-def _keys(value: Any, what: str, keys: str) -> dict[str, Any]:
-    """Return ``value`` when it is an object with exactly these keys."""
-    if not isinstance(value, dict) or set(value) != set(keys.split()):
-        raise MalformedCertificate(f"{what} is an object with exactly the keys {keys}")
-    return value
-
-
-def _kind(evidence: Any) -> str:
-    kind = evidence.get("kind") if isinstance(evidence, dict) else None
-    if type(kind) is not str:
-        raise MalformedCertificate("the evidence is an object with a 'kind'")
-    return kind
-
-
-def _shown(value: object) -> str:
-    """Return a short text for ``value`` that never walks into nested input."""
-    return repr(value[:40]) if isinstance(value, str) else f"a value of type {type(value).__name__}"
-
-
 def _claim_numbers(claim: dict[str, Any], n: int) -> tuple[int, int]:
     """Return r and s of a claim in range: r >= 1 and 1 <= s <= n, on at least one node."""
     if claim["property"] != "rs-robust":
-        raise MalformedCertificate(f"the property is 'rs-robust', not {_shown(claim['property'])}")
+        raise MalformedCertificate(f"the property is 'rs-robust', not {shown(claim['property'])}")
     r, s = claim["r"], claim["s"]
     if type(r) is not int or type(s) is not int or not 1 <= r <= 2**31:
         raise MalformedCertificate("r and s are integers and r is at least 1")
@@ -140,23 +110,9 @@ def _claim_numbers(claim: dict[str, Any], n: int) -> tuple[int, int]:
     return r, s
 
 
-def _id_set(value: Any, n: int, what: str) -> list[int]:
-    """Return a strictly ascending list of ids."""
-    ids = _id_list(value, n, what)
-    if any(not a < b for a, b in pairwise(ids)):
-        raise MalformedCertificate(f"{what} is strictly ascending")
-    return ids
-
-
-def _id_list(value: Any, n: int, what: str) -> list[int]:
-    if not isinstance(value, list) or not all(type(i) is int and 0 <= i < n for i in value):
-        raise MalformedCertificate(f"{what} is a list of ids in 0..{n - 1}")
-    return value
-
-
 def _check_violation(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any]) -> None:
     """The definition: S1 and S2 are nonempty and disjoint, neither is all r-reachable, fewer than s nodes are."""
-    pair = [set(_id_set(evidence[name], graph.n, name)) for name in ("S1", "S2")]
+    pair = [set(id_set(evidence[name], graph.n, name)) for name in ("S1", "S2")]
     if not pair[0] or not pair[1] or pair[0] & pair[1]:
         raise RejectedCertificate("S1 and S2 are not nonempty and disjoint")
     reachable = [sum(len([j for j in graph.hears[i] if j not in S]) >= r for i in S) for S in pair]
@@ -177,7 +133,7 @@ def _check_direct(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any
         return check_refutation(graph, r, s, body)
     least = min(map(len, graph.hears))
     if evidence["kind"] != "degree":
-        raise MalformedCertificate(f"a proof is of kind 'degree' or 'refutation', not {_shown(evidence['kind'])}")
+        raise MalformedCertificate(f"a proof is of kind 'degree' or 'refutation', not {shown(evidence['kind'])}")
     if body:
         raise MalformedCertificate(f"{len(body)} bytes follow the header, but evidence of kind 'degree' has no body")
     if least < graph.n // 2 + r - 1:
@@ -191,9 +147,9 @@ def _check_growth(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any
     The seed is the subgraph induced on ``seed``, proven by ``proof`` (of kind degree or refutation); ``order`` lists
     every other node once.
     """
-    seed = _id_set(evidence["seed"], graph.n, "seed")
-    order = _id_list(evidence["order"], graph.n, "order")
-    proof = _keys(evidence["proof"], "the proof of the seed", "kind")
+    seed = id_set(evidence["seed"], graph.n, "seed")
+    order = id_list(evidence["order"], graph.n, "order")
+    proof = require_keys(evidence["proof"], "the proof of the seed", "kind")
     if sorted(seed + order) != list(range(graph.n)):
         raise RejectedCertificate("seed and order together do not list every node once")
     if len(seed) < s:
@@ -216,15 +172,15 @@ def _check_growth(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any
 
 def _check_derivation(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any], body: bytes) -> int:
     """A seed proven by ``proof``, steps that make the graph of it, and ``ids``: which node of it each node made is."""
-    seed = _keys(evidence["seed"], "the seed", "nodes arcs r s")
-    proof = _keys(evidence["proof"], "the proof of the seed", "kind")
+    seed = require_keys(evidence["seed"], "the seed", "nodes arcs r s")
+    proof = require_keys(evidence["proof"], "the proof of the seed", "kind")
     made = Derivation(seed["nodes"], seed["arcs"], seed["r"], seed["s"])
     hears = tuple(tuple(sorted(heard)) for heard in made.hears)
     start = CanonicalGraph(tuple(range(len(hears))), hears, "")
     tree_nodes = _check_direct(start, made.r, made.s, proof, body)
     made.take(evidence["steps"])
     made.weaken(r, s)
-    ids = _id_list(evidence["ids"], graph.n, "ids")
+    ids = id_list(evidence["ids"], graph.n, "ids")
     if len(ids) != len(made.hears) or sorted(ids) != list(range(graph.n)):
         raise RejectedCertificate(f"ids do not name each of the {graph.n} nodes once, for {len(made.hears)} nodes made")
     for i, heard in zip(ids, made.hears, strict=True):

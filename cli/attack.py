@@ -42,6 +42,9 @@ MODELS = ("malicious", "malicious-local", "byzantine", "delayed", "delayed-local
     show_default=True,
     help="One lie for all; different lies (byzantine); or delays that show two faces. -local: F around every node.",
 )
+@click.option("-T", "--sampling-period", "period", type=float, help="With these three: is agreement promised ...")
+@click.option("--alpha", type=float, help="... for vehicles with this gain ...  [default: 1.5/T]")
+@click.option("--sigma", type=float, help="... whose kept weights add up to at most this?  [default: weights 1/d]")
 @click.option("--steps", type=click.IntRange(min=1), default=1000, show_default=True, help="How long it is played.")
 @click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE", help="Write it.")
 @click.option("--expect", type=click.Choice(("agreement", "split")), help="Exit with 10 when it ends otherwise.")
@@ -59,6 +62,9 @@ def command(
     source: str,
     f: int,
     model: str,
+    period: float | None,
+    alpha: float | None,
+    sigma: float | None,
     steps: int,
     output: Path | None,
     expect: str | None,
@@ -70,20 +76,24 @@ def command(
 ) -> None:
     """Find an attack of F nodes that splits GRAPH, carry it out, and write it to a file for 'simulate --attack'.
 
-    Exit code 0 when the attack splits the network exactly; 10 when it is proven that F nodes cannot; 30 undecided.
-    With --expect: 0 for that outcome and 10 for the other.
+    Exit code 0 when the attack splits the network exactly, for all gains; 10 when it is proven that F nodes cannot, for
+    the rules and gains that the answer names; 30 undecided, or the gains given lie outside the theory. With --expect: 0
+    for that outcome and 10 for the other.
     """
+    from robustness.files.writing import replace_file, require_different_files
     from robustness.simulation.finding import find_attack
 
+    require_different_files([source], [output])
     graph = load_graph(source)
     with ProgressLine(console) as line:
         found = find_attack(
-            graph, f, model, algorithm=algorithm, time_limit=timeout, jobs=jobs, seed=seed, progress=line
-        )
+            graph, f, model, algorithm=algorithm, time_limit=timeout, jobs=jobs, seed=seed, progress=line,
+            T=period, alpha=alpha, sigma=sigma,
+        )  # fmt: skip
     if found.attack is not None:
         _carry_out(found.attack, steps)
         if output is not None:
-            output.write_text(json.dumps(found.attack.as_dict(), indent=1) + "\n", encoding="utf-8")
+            replace_file(output, (json.dumps(found.attack.as_dict(), indent=1) + "\n").encode())
             console.talk(f"wrote {output}")
     if as_json:
         attack = None if found.attack is None else found.attack.as_dict()

@@ -71,9 +71,11 @@ def command(
     robust, 30 undecided (nothing is written).
     """
     from robustness.decision.certification import certify
-    from robustness.files import replace_file
+    from robustness.files.writing import replace_file, require_different_files
     from robustness.results import RobustnessResult, Verdict
 
+    proofs = [output.with_name(output.name + suffix) for suffix in (".opb", ".pbp")] if proof_format == "veripb" else []
+    require_different_files([source], [output, canonical, *proofs])
     graph = load_graph(source)
     with ProgressLine(console) as line:
 

@@ -12,6 +12,7 @@ import click
 from cli.exit_codes import ExitCode
 from cli.interruption import Overrun, interruptibly
 from cli.options import (
+    Seconds,
     algorithm_option,
     graph_argument,
     jobs_option,
@@ -31,7 +32,7 @@ __all__ = ["PROFILE_NODES", "SCHEMA", "command"]
 
 SCHEMA = "robustness/check/1"
 
-#: Up to this many nodes the whole profile is shown: seconds by the subset-minimum transform, O(n 2^n).
+#: Up to this many nodes the whole profile is shown: a tenth of a second by the subset-minimum transform, O(n 2^n).
 PROFILE_NODES = 22
 
 
@@ -83,6 +84,12 @@ class Report:
 @json_option
 @algorithm_option
 @timeout_option
+@click.option(
+    "--s-timeout",
+    type=Seconds(),
+    metavar="SECONDS",
+    help="Without -r: stop looking for the greatest s after this time, once r* is known.",
+)
 @jobs_option
 @seed_option
 @talk_options
@@ -97,6 +104,7 @@ def command(
     as_json: bool,
     algorithm: str,
     timeout: float | None,
+    s_timeout: float | None,
     jobs: int,
     seed: int,
 ) -> None:
@@ -107,11 +115,13 @@ def command(
     """
     if s is not None and r is None:
         raise click.UsageError("-s says how many nodes go with -r: give -r as well.")
+    if s_timeout is not None and r is not None:
+        raise click.UsageError("--s-timeout is for the search for the greatest s: leave out -r.")
     graph = load_graph(source)
     options = {"algorithm": algorithm, "jobs": jobs, "seed": seed}
     with ProgressLine(console) as line:
         if r is None:
-            report = _determine(graph, timeout, options, line)
+            report = _determine(graph, timeout, s_timeout, options, line)
         else:
             report = _decide(graph, r, 1 if s is None else s, timeout, options, line)
     if as_json:
@@ -142,14 +152,17 @@ def _decide(
     return report
 
 
-def _determine(graph: Digraph, timeout: float | None, options: dict[str, Any], line: ProgressLine) -> Report:
+def _determine(
+    graph: Digraph, timeout: float | None, s_timeout: float | None, options: dict[str, Any], line: ProgressLine
+) -> Report:
     from robustness.decision.front import determine_robustness
 
     started = time.perf_counter()
 
     def work() -> RobustnessResult:
-        note = line.note_bounds
-        return determine_robustness(graph, time_limit=timeout, progress=line, on_bounds=note, **options)
+        return determine_robustness(
+            graph, time_limit=timeout, s_time_limit=s_timeout, progress=line, on_bounds=line.note_bounds, **options
+        )
 
     try:
         report = _report_on(graph, interruptibly(work, timeout, line.tick))
@@ -157,7 +170,7 @@ def _determine(graph: Digraph, timeout: float | None, options: dict[str, Any], l
         report = _stopped(graph, 0, 1, line, options, stop)
         report.r = report.bounds.lower.value
     else:
-        if report.verdict == "determined" and graph.n <= PROFILE_NODES:
+        if report.verdict == "determined" and report.profile is None and graph.n <= PROFILE_NODES:
             left = None if timeout is None else timeout - (time.perf_counter() - started)
             _add_profile(report, left, options, line)
     report.seconds = time.perf_counter() - started
@@ -167,6 +180,7 @@ def _determine(graph: Digraph, timeout: float | None, options: dict[str, Any], l
 def _add_profile(report: Report, left: float | None, options: dict[str, Any], line: ProgressLine) -> None:
     from robustness.decision.front import robustness_profile
     from robustness.errors import InternalError, Undecided
+    from robustness.results import Bound, Bounds
 
     if left is not None and left <= 0:
         return
@@ -181,9 +195,15 @@ def _add_profile(report: Report, left: float | None, options: dict[str, Any], li
     except KeyboardInterrupt:
         report.is_interrupted = True
         return
-    if profile.get(report.r, report.s) != report.s or profile.get(report.r + 1, 0):
-        raise InternalError(f"the profile {dict(profile)} contradicts r* = {report.r}, s = {report.s}: please report")
+    low, high = report.s, report.s if report.s_bounds is None else report.s_bounds.upper.value
+    if not low <= profile.get(report.r, low) <= high or profile.get(report.r + 1, 0):
+        raise InternalError(
+            f"the profile {dict(profile)} contradicts r* = {report.r}, s in {low}..{high}: please report"
+        )
     report.profile = profile
+    if report.r:
+        exact = Bound(profile[report.r], "the profile")
+        report.s, report.s_bounds = exact.value, Bounds(exact, exact)
 
 
 def _report_on(graph: Digraph, result: RobustnessResult) -> Report:
@@ -195,7 +215,8 @@ def _report_on(graph: Digraph, result: RobustnessResult) -> Report:
         result.bounds or _trivial_bounds(graph),
         result.s_bounds,
         result.witness,
-        algorithm=result.algorithm,
+        result.profile,
+        result.algorithm,
         reason=str(result.stats.get("reason", "")),
     )
 
@@ -257,10 +278,11 @@ def _headline(report: Report) -> str:
             return f"{click.style('not robust:', fg='red', bold=True)} the network is not {name}"
         case "determined":
             verdict = click.style("determined:", fg="green", bold=True)
-            greatest = f"for r = {r} the greatest s is {s}"
+            known, greatest = f"r* = {r}", f"for r = {r} the greatest s is {s}"
             if report.s_bounds is not None and report.s_bounds.upper.value > s:
-                greatest = f"for r = {r} the greatest s is at least {s} and at most {report.s_bounds.upper.value}"
-            return f"{verdict} r* = {r}: the network is {r}-robust, not {r + 1}-robust; {greatest}"
+                known = f"r* = {r}; s in {s}..{report.s_bounds.upper.value}"
+                greatest = f"the greatest s for r = {r} is not known exactly"
+            return f"{verdict} {known}: the network is {r}-robust, not {r + 1}-robust; {greatest}"
         case _:
             what = f"whether the network is {name}" if report.is_decision else "the greatest r"
             why = f" ({report.reason})" if report.reason else ""

@@ -128,10 +128,12 @@ def command(
     Exit code 0 yes, 10 no, 30 undecided, or no certificate in time.
     """
     from robustness.errors import Undecided
+    from robustness.files.writing import require_different_files
     from robustness.time_varying import read_sequence
 
     if all_windows and window is None:
         raise click.UsageError("--all-windows decides every window of one length: give --window as well.")
+    require_different_files([source], [picture, certificate, canonical])
     sequence = read_sequence(source, period=period, step=step, both_ways=both_ways)
     with ProgressLine(console) as line:
         options = {"algorithm": algorithm, "jobs": jobs, "seed": seed, "progress": line}

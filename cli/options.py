@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ALGORITHM_NAMES",
+    "Seconds",
     "algorithm_option",
     "graph_argument",
     "jobs_option",

@@ -16,8 +16,8 @@ import click
 
 if TYPE_CHECKING:
     from certificates.graph import Label
-    from robustness.decision.algorithms import Progress
     from robustness.digraph import Digraph
+    from robustness.limits import Progress
     from robustness.results import Bounds
 
 __all__ = ["Console", "ProgressLine", "graph_document", "pass_console", "set_document", "set_text"]

@@ -42,6 +42,7 @@ _SCHEDULES = ("synchronous", "periodic", "random", "adversarial", "delayed")
 _ADVERSARIES = ("auto", "constant", "ramp", "sine", "random", "two-face", "extreme", "greedy", "crash", "omission")
 _EXPERIMENTS = (
     "setting-1", "setting-2", "proposition-1", "necessity", "sufficiency", "gap", "corollary-1", "corollary-2",
+    "gains-outside", "swap", "push",
 )  # fmt: skip
 
 #: Seconds for the search for an attack.
@@ -88,6 +89,7 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
     metavar="PATH",
     help="A picture (.png, .svg, .pdf); with --experiment also a folder for one per case.",
 )
+@click.option("--animate", type=_FILE, metavar="FILE", help="The first run as a film: .gif, or .html to play.")
 @click.option("--expect", type=click.Choice(("agreement", "split")), help="Exit with 10 when it ends otherwise.")
 @json_option
 @timeout_option
@@ -99,9 +101,9 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 def command(ctx: click.Context, console: Console, /, **options: Any) -> None:
     """Run resilient consensus on GRAPH under attack, and say whether it ends in agreement or split.
 
-    Exit code 0 for agreement or split, 30 when undecided at the horizon; with --expect 10 for the other outcome. An
-    experiment ends in 10 when a case differs from what the paper reports. With --certificate, 10 is a counterexample;
-    it is saved for --replay, as counterexample.json unless --save names another file.
+    Exit code 0 for agreement, split or divergence, 30 when undecided at the horizon; with --expect 10 for another one.
+    An experiment ends in 10 when a case differs from what the paper reports. With --certificate, 10 is a
+    counterexample; it is saved for --replay, as counterexample.json unless --save names another file.
     """
     if sum(options[name] is not None for name in ("source", "experiment", "replay")) != 1:
         raise click.UsageError("give one of GRAPH, --experiment and --replay.")
@@ -109,10 +111,16 @@ def command(ctx: click.Context, console: Console, /, **options: Any) -> None:
         raise click.UsageError("--attack and --certificate need the GRAPH they are about.")
     if options["attack_file"] and options["certificate"]:
         raise click.UsageError("give one of --attack and --certificate.")
+    if options["animate"] is not None and (options["experiment"] or options["certificate"]):
+        raise click.UsageError("--animate shows one run: give it with GRAPH or --replay.")
     if options["over_time"] and (options["source"] is None or options["certificate"]):
         raise click.UsageError("--over-time says what GRAPH is, and a certificate is about one graph.")
     if options["repeat"] is not None and not options["over_time"]:
         raise click.UsageError("--period belongs to a sequence: give --over-time as well.")
+    from robustness.files.writing import require_different_files
+
+    inputs = [options[name] for name in ("source", "replay", "attack_file", "certificate")]
+    require_different_files(inputs, [options[name] for name in ("save", "plot", "animate")])
     if options["experiment"] is not None:
         code = _experiment(console, options)
     elif options["certificate"] is not None:
@@ -167,8 +175,9 @@ def _runs(ctx: click.Context, console: Console, options: dict[str, Any]) -> Exit
     else:
         scenario, starts = recorded[0], [recorded[1]]
     outcomes = simulate(
-        scenario, starts, record=options["plot"] is not None, jobs=options["jobs"], time_limit=options["timeout"]
-    )
+        scenario, starts, record=options["plot"] is not None or options["animate"] is not None, jobs=options["jobs"],
+        time_limit=options["timeout"],
+    )  # fmt: skip
     if options["save"] is not None:
         from robustness.simulation.replay import write_run
 
@@ -177,6 +186,13 @@ def _runs(ctx: click.Context, console: Console, options: dict[str, Any]) -> Exit
         from robustness.figures.simulation import Run, draw_runs
 
         draw_runs([Run(scenario, starts[0], outcomes[0])], options["plot"])
+        console.talk(f"wrote {options['plot']}")
+    if options["animate"] is not None:
+        from robustness.figures.animation import animate
+        from robustness.figures.simulation import Run
+
+        animate(Run(scenario, starts[0], outcomes[0]), options["animate"])
+        console.talk(f"wrote {options['animate']}")
     overall = _overall(outcomes)
     if options["as_json"]:
         console.document(SCHEMA, _document(scenario, starts, outcomes, overall))
@@ -234,6 +250,7 @@ def _scenario(network: Topology, options: dict[str, Any]) -> tuple[Scenario, lis
     from dataclasses import replace
 
     from robustness.simulation.adversaries import ADVERSARIES
+    from robustness.simulation.front import most_heard
     from robustness.simulation.scenario import Scenario, random_start
     from robustness.simulation.schedules import schedule_named
 
@@ -243,7 +260,7 @@ def _scenario(network: Topology, options: dict[str, Any]) -> tuple[Scenario, lis
     tau = default if options["tau"] is None else options["tau"]
     # A link may be gone for a turn less one step. What tau has beyond that is for waits and delays.
     schedule = replace(schedule_named(options["schedule"], max(tau - turn + 1, 0)), tau=tau)
-    malicious = [node_named(graph, text) for text in options["malicious"]] or _most_heard(graph, bound)
+    malicious = [node_named(graph, text) for text in options["malicious"]] or most_heard(graph, bound)
     adversary = ADVERSARIES["greedy" if options["adversary"] == "auto" else options["adversary"]]()
     scenario = Scenario(
         network, bound, options["rule"], options["model"], adversary,
@@ -277,18 +294,10 @@ def _worst(scenario: Scenario, starts: list[Start], options: dict[str, Any]) -> 
     return replace(scenario, adversary=attack.adversary, groups=groups), [attack.start(seed=options["seed"])]
 
 
-def _most_heard(graph: Digraph, f: int) -> list[Label]:
-    """Return the f nodes with the most listeners, at least one node fewer than all."""
-    import numpy as np
-
-    listeners = np.bincount(graph.in_indices, minlength=graph.n)
-    return [graph.labels[i] for i in np.argsort(-listeners, kind="stable")[: max(0, min(f, graph.n - 1))].tolist()]
-
-
 def _overall(outcomes: Sequence[Outcome]) -> str:
-    """Return the verdict over several runs: one split is a split, and agreement needs all."""
+    """Return the verdict over several runs: one split is a split, one divergence is one, and agreement needs all."""
     verdicts = {outcome.verdict.value for outcome in outcomes}
-    return "split" if "split" in verdicts else "undecided" if "undecided" in verdicts else "agreement"
+    return next(verdict for verdict in ("split", "divergence", "undecided", "agreement") if verdict in verdicts)
 
 
 def _document(scenario: Scenario, starts: list[Start], outcomes: Sequence[Outcome], overall: str) -> dict[str, Any]:
@@ -316,24 +325,37 @@ def _lines(
     yield _headline(overall, len(outcomes))
     for start, outcome in zip(starts, outcomes, strict=True):
         yield f"malicious  {set_text(start.malicious, whole=whole)}, seed {start.seed}: {outcome.verdict.value}" + (
-            ", exactly" if outcome.exact else ""
+            ", exactly" if outcome.exact else "" if outcome.diverged_at is None else f" at step {outcome.diverged_at}"
         )
-        yield f"spread     {outcome.initial_spread:g} at first, {outcome.spread:g} after {scenario.steps} steps" + (
+        last = _last(scenario, outcome)
+        yield f"spread     {outcome.initial_spread:g} at first, {outcome.spread:g} after {last} steps" + (
             "" if outcome.since is None else f", within the tolerance since step {outcome.since}"
         )
+        if outcome.diverged_at is not None:
+            yield f"gains      {outcome.promise or 'inside the theory: please report'}"
         for value, labels in outcome.groups if outcome.verdict.value != "agreement" else ():
             yield f"group      {set_text(labels, whole=whole)} at {value:g}"
         if outcome.safe is not None:
-            yield f"safety     {'kept: nobody left the initial range' if outcome.safe else 'LOST: please report'}"
+            yield f"safety     {'kept: nobody left the hull of the start' if outcome.safe else 'LOST: please report'}"
+        if outcome.rate is not None and outcome.contraction is not None:
+            least, every = outcome.contraction
+            proven = f"on a network without a trap the spread loses at least {least:.2g} of itself in {every} steps"
+            yield f"rate       {outcome.rate:.4g} a step, fitted; proven: {proven}"
     yield f"rule       {scenario.rule}, f = {scenario.f}, {scenario.model}, {scenario.adversary}"
     yield f"schedule   {scenario.schedule}"
 
 
+def _last(scenario: Scenario, outcome: Outcome) -> int:
+    """Return the step that the outcome's numbers are of: the horizon, or where a divergence ended the run."""
+    return scenario.steps if outcome.diverged_at is None else outcome.diverged_at
+
+
 def _headline(overall: str, runs: int) -> str:
-    color = {"agreement": "green", "split": "red", "undecided": "yellow"}[overall]
+    color = {"agreement": "green", "split": "red", "divergence": "red", "undecided": "yellow"}[overall]
     what = {
         "agreement": "all normal vehicles came together",
         "split": "normal vehicles stayed apart",
+        "divergence": "normal vehicles left every bound",
         "undecided": "neither agreement nor a constant gap at the horizon",
     }[overall]
     return f"{click.style(overall + ':', fg=color, bold=True)} {what}" + (f", in {runs} runs" if runs > 1 else "")

@@ -78,7 +78,13 @@ class Report:
     "--tau",
     type=click.IntRange(min=1),
     metavar="T",
-    help="GRAPH is a sequence as for 'joint'; delays, and values of links that have gone, are at most T steps old.",
+    help="GRAPH is a sequence as for 'joint'; values are used up to T steps after they were sent, also of links gone.",
+)
+@click.option(
+    "--delay", type=click.IntRange(min=1), metavar="B", help="With --tau: delays are at most B; T unless given."
+)
+@click.option(
+    "--gap", type=click.IntRange(min=1), metavar="G", help="With --tau: updates at most G steps apart; 1 unless given."
 )
 @click.option("--period", type=click.IntRange(min=1), metavar="P", help="With --tau: the last P steps repeat for ever.")
 @click.option(
@@ -98,6 +104,8 @@ def command(
     model: str | None,
     required: int | None,
     tau: int | None,
+    delay: int | None,
+    gap: int | None,
     period: int | None,
     output: Path | None,
     as_json: bool,
@@ -122,16 +130,21 @@ def command(
     certificates, and DIR/MODEL-attack.json is what 'simulate --attack' reads. With --tau, guaranteed
     certificates are about DIR/sequence.json, all else is about the union of the steps, DIR/graph.json.
     """
-    if tau is None and period is not None:
-        raise click.UsageError("--period belongs to a sequence: give --tau as well.")
+    for option, value in (("--period", period), ("--delay", delay), ("--gap", gap)):
+        if tau is None and value is not None:
+            raise click.UsageError(f"{option} belongs to a sequence: give --tau as well.")
     if tau is not None and model not in (None, "delayed", "delayed-local"):
         raise click.UsageError(f"theory says nothing about {model} over time: with --tau, delayed or delayed-local.")
+    if output is not None:
+        from robustness.files.writing import require_different_files
+
+        require_different_files([source], [output / "graph.json", output / "sequence.json"])
     network, graph = _load(source, tau, period)
     started = time.perf_counter()
     with ProgressLine(console) as line:
 
         def work() -> Report:
-            return _examine(network, graph, model, tau, required, timeout, jobs, seed, line)
+            return _examine(network, graph, model, (tau, delay, gap), required, timeout, jobs, seed, line)
 
         try:
             report = interruptibly(work, timeout, line.tick)
@@ -161,7 +174,7 @@ def _examine(
     network: Digraph | TimeVaryingGraph,
     graph: Digraph,
     model: str | None,
-    tau: int | None,
+    ages: tuple[int | None, int | None, int | None],
     required: int | None,
     timeout: float | None,
     jobs: int,
@@ -174,7 +187,10 @@ def _examine(
     from robustness.threat_models.results import ToleranceTable
 
     started = time.perf_counter()
-    found = tolerance(network, model, tau=tau, time_limit=timeout, jobs=jobs, seed=seed, progress=line)
+    tau, delay, gap = ages
+    found = tolerance(
+        network, model, tau=tau, delay=delay, gap=gap, time_limit=timeout, jobs=jobs, seed=seed, progress=line
+    )
     table = found if isinstance(found, ToleranceTable) else ToleranceTable(graph, (found,))
     confirmed = {result.model: confirm(result) for result in table.results}
     if False in confirmed.values():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -10,17 +11,37 @@ from cli.exit_codes import ExitCode
 from cli.options import graph_argument, json_option, load_graph, talk_options
 from cli.output import Console, pass_console
 
-__all__ = ["SCHEMA", "command"]
+if TYPE_CHECKING:
+    from certificates.questions import Claim
+
+__all__ = ["FACES", "SCHEMA", "command"]
 
 SCHEMA = "robustness/verify/1"
+
+#: How many faces a malicious node has under a threat model, and how malicious nodes are bounded. Written out so that
+#: --help need not import the library; a test compares them.
+FACES = {
+    "malicious": (1, "total"),
+    "malicious-local": (1, "local"),
+    "byzantine": (2, "total"),
+    "delayed": (2, "total"),
+    "delayed-local": (2, "local"),
+}
 
 
 @click.command("verify")
 @graph_argument
 @click.argument("certificate", type=click.Path(path_type=Path))
-@click.option("--expect", type=click.Choice(["robust", "not-robust"]), help="The verdict that must be proven.")
-@click.option("-r", type=int, help="The r that the claim must be about.")
-@click.option("-s", type=int, help="The s that the claim must be about.")
+@click.option(
+    "--expect",
+    type=click.Choice(["robust", "not-robust", "together", "apart"]),
+    help="The verdict that must be proven; of malicious nodes: the network keeps together, or can be split apart.",
+)
+@click.option("-r", type=int, help="The r that the claim must be about, or imply.")
+@click.option("-s", type=int, help="The s that the claim must be about, or imply.")
+@click.option("--window", type=int, metavar="L", help="The number of steps that a joint claim must be about.")
+@click.option("-f", "f", type=int, help="The number of malicious nodes that the claim must be about, or imply.")
+@click.option("--model", type=click.Choice(tuple(FACES)), help="With -f: the threat model that it must be about.")
 @json_option
 @talk_options
 @pass_console
@@ -33,41 +54,68 @@ def command(
     expect: str | None,
     r: int | None,
     s: int | None,
+    window: int | None,
+    f: int | None,
+    model: str | None,
     as_json: bool,
 ) -> None:
-    """Verify CERTIFICATE for GRAPH and print the claim that it proves.
+    """Verify CERTIFICATE, of any kind, for GRAPH and compare the claim that it proves with the question asked.
 
-    Exit code 0: it proves its claim, and the claim is the one asked for. 10: it does not. 3: a file is malformed.
+    For a certificate of joint robustness GRAPH is the sequence that 'joint --canonical' wrote. A claim that implies the
+    one asked for answers too. Exit code 0: it proves its claim, and the claim answers the question. 10: it does not. 3:
+    a file is malformed. Without a question the claim is printed, and said to be compared with none.
     """
-    from certificates import verify
     from certificates.__main__ import read_at_most
-    from certificates.verification import MAX_CERTIFICATE_BYTES
+    from certificates.envelope import MAX_CERTIFICATE_BYTES
+    from certificates.questions import Question, comparison
     from robustness.errors import UnreadableTopology
 
-    graph = load_graph(source)
+    faces, bound = FACES[model] if model is not None else (None, None)
+    question = Question(expect, r, s, window, f, faces, bound)
+    if question.gap():
+        raise click.UsageError("a question about malicious nodes takes --expect together or apart, -f and --model.")
     try:
         data = read_at_most(certificate, MAX_CERTIFICATE_BYTES)
     except OSError as problem:
         raise UnreadableTopology(f"{certificate}: cannot be read: {problem.strerror}") from None
-    claim = verify(graph.canonical_bytes(), data)
-    asked = {"verdict": expect, "r": r, "s": s}
-    wrong = [name for name, value in asked.items() if value is not None and value != getattr(claim, name)]
+    claim = _verified(source, data)
+    answers, how = comparison(claim, question)
     if as_json:
-        console.document(
-            SCHEMA,
-            {
-                "verdict": claim.verdict,
-                "r": claim.r,
-                "s": claim.s,
-                "evidence": claim.evidence,
-                "sha256": claim.sha256,
-                "tree_nodes": claim.tree_nodes,
-                "as_asked": not wrong,
-            },
-        )
-    else:
-        console.result(f"verified: {claim}")
-    if wrong:
-        console.error(f"rejected: the certificate proves another claim than asked for ({', '.join(wrong)} differ)")
+        console.document(SCHEMA, _document(claim) | {"as_asked": answers, "comparison": how})
+    elif answers:
+        console.result(f"verified: {claim}; {how}")
+    if not answers:
+        console.error(f"rejected: {how}; proved is that {claim}")
         ctx.exit(ExitCode.REFUTED)
     ctx.exit(ExitCode.DONE)
+
+
+def _verified(source: str, certificate: bytes) -> Claim:
+    """Return what the certificate proves about the graph or the sequence of graphs that ``source`` names."""
+    from certificates.joint import FORMAT as JOINT_FORMAT
+    from certificates.questions import format_of, verify_any
+
+    if format_of(certificate) == JOINT_FORMAT:
+        return verify_any(_sequence_bytes(source), certificate)
+    return verify_any(load_graph(source).canonical_bytes(), certificate)
+
+
+def _sequence_bytes(source: str) -> bytes:
+    """Return the canonical bytes of a sequence: those of the file itself, or of what it says in another format."""
+    from certificates.__main__ import read_at_most
+    from certificates.joint import MAX_SEQUENCE_BYTES, SEQUENCE_FORMAT
+    from robustness.time_varying import canonical_sequence
+    from robustness.time_varying.reading import read_sequence
+
+    path = Path(source)
+    if path.is_file():
+        data = read_at_most(path, MAX_SEQUENCE_BYTES)
+        if SEQUENCE_FORMAT.encode() in data[:64]:
+            return data
+    return canonical_sequence(read_sequence(source))
+
+
+def _document(claim: Claim) -> dict[str, object]:
+    """Return what a claim says, as far as claims of its kind say it."""
+    names = ("verdict", "r", "s", "window", "f", "faces", "bound", "evidence", "sha256", "tree_nodes")
+    return {name: getattr(claim, name) for name in names if hasattr(claim, name)}

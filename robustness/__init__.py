@@ -28,8 +28,10 @@ from robustness.errors import (
 from robustness.results import Bound, Bounds, RobustnessResult, Verdict, Witness
 
 if TYPE_CHECKING:
+    from robustness.figures.network import draw
     from robustness.files import read_topology, write_topology
     from robustness.graph_search import find_graph
+    from robustness.simulation.front import simulate
     from robustness.threat_models import ToleranceResult, tolerance
     from robustness.time_varying import (
         JointResult,
@@ -47,9 +49,11 @@ _LATER = {
     "certify_joint": "robustness.time_varying",
     "check_joint_robustness": "robustness.time_varying",
     "constructions": "robustness.constructions",
+    "draw": "robustness.figures.network",
     "find_graph": "robustness.graph_search",
     "joint_curve": "robustness.time_varying",
     "read_topology": "robustness.files",
+    "simulate": "robustness.simulation.front",
     "tolerance": "robustness.threat_models",
     "write_topology": "robustness.files",
 }
@@ -78,6 +82,7 @@ __all__ = [
     "check_joint_robustness",
     "check_rs_robustness",
     "determine_robustness",
+    "draw",
     "find_graph",
     "is_r_robust",
     "is_rs_robust",
@@ -85,13 +90,23 @@ __all__ = [
     "r_reachable_nodes",
     "read_topology",
     "robustness_profile",
+    "simulate",
     "tolerance",
     "write_topology",
 ]
 
 
+def __dir__() -> list[str]:
+    """Return every public name, those that are imported later among them."""
+    return sorted({*__all__, "__version__", "constructions"})
+
+
 def __getattr__(name: str) -> Any:
     """Import what only some users need when they ask for it, so that ``import robustness`` stays fast."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("graph-robustness")
     if name not in _LATER:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module = importlib.import_module(_LATER[name])

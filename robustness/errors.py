@@ -7,7 +7,7 @@
     ├── InvalidParameter (also ValueError)   r, s, f, a limit or an option is out of range
     ├── UnreadableTopology (also ValueError) a file or a name does not yield a graph
     ├── MissingExtra (also ImportError)      an optional package is not installed
-    ├── Undecided (also TimeoutError)        a limit stopped the search; nothing is claimed
+    ├── Undecided                            a limit stopped the search; nothing is claimed
     └── InternalError (also RuntimeError)    an algorithm contradicted itself; a bug, never a verdict
 
 A message names the rule, the value and the fix, in one line. A network that is not robust is an
@@ -15,6 +15,12 @@ answer, not an error.
 """
 
 from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from robustness.results import Bounds
 
 __all__ = [
     "InternalError",
@@ -47,8 +53,25 @@ class MissingExtra(RobustnessError, ImportError):
     """An optional package that this call needs is not installed."""
 
 
-class Undecided(RobustnessError, TimeoutError):
-    """A limit stopped the search before the question was decided; nothing is claimed."""
+class Undecided(RobustnessError):
+    """A limit stopped the search before the question was decided; nothing is claimed beyond what is proven here.
+
+    It is no TimeoutError, which is an OSError, so that nobody who catches trouble with files catches it.
+
+    Attributes
+    ----------
+    bounds : Bounds or None
+        What is proven about the number that was asked for.
+    profile : mapping or None
+        The part of a robustness profile that is proven.
+    """
+
+    def __init__(
+        self, message: str, *, bounds: Bounds | None = None, profile: Mapping[int, int] | None = None
+    ) -> None:
+        super().__init__(message)
+        self.bounds = bounds
+        self.profile = profile
 
 
 class InternalError(RobustnessError, RuntimeError):

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import enum
-import html
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from certificates.graph import Label
+from robustness.digraph import Digraph
 from robustness.errors import Undecided
+from robustness.natural_order import in_natural_order
+from robustness.showing import Shown, labels_in_words
 
 __all__ = ["Bound", "Bounds", "RobustnessResult", "Verdict", "Witness"]
 
@@ -58,8 +60,8 @@ class Bounds:
         }
 
 
-@dataclass(frozen=True, slots=True)
-class RobustnessResult:
+@dataclass(frozen=True, slots=True, repr=False)
+class RobustnessResult(Shown):
     """The answer to ``check_rs_robustness`` or ``determine_robustness``.
 
     Attributes
@@ -78,12 +80,16 @@ class RobustnessResult:
         What is proven about r*.
     s_bounds : Bounds or None
         What is proven about s_max(r), for ``determine_robustness``.
+    profile : mapping or None
+        The whole table r -> s_max(r), where ``determine_robustness`` computed it on the way.
     algorithm : str
         The name in ``ALGORITHMS`` that decided, or the bound or rule that made a search unnecessary.
     stats : mapping
         Counters of the search: nodes, leaves, solver status, the reason of an UNDECIDED.
     seconds : float
         Wall-clock time.
+    graph : Digraph or None
+        What the question was about, for :meth:`plot`.
     """
 
     verdict: Verdict
@@ -93,9 +99,11 @@ class RobustnessResult:
     certificate: bytes | None = field(default=None, repr=False)
     bounds: Bounds | None = None
     s_bounds: Bounds | None = None
+    profile: Mapping[int, int] | None = field(default=None, compare=False, hash=False)
     algorithm: str = ""
     stats: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}), compare=False, hash=False)
     seconds: float = field(default=0.0, compare=False)
+    graph: Digraph | None = field(default=None, compare=False)
 
     def __bool__(self) -> bool:
         raise TypeError(
@@ -117,7 +125,8 @@ class RobustnessResult:
             return False
         raise Undecided(
             f"({self.r},{self.s})-robustness was not decided ({self.stats.get('reason', 'a limit was reached')}): "
-            "raise the time limit or choose another algorithm"
+            "raise the time limit or choose another algorithm",
+            bounds=self.bounds,
         )
 
     def summary(self) -> str:
@@ -135,17 +144,30 @@ class RobustnessResult:
                 known = f", {self.bounds.lower.value} <= r* <= {self.bounds.upper.value}" if self.bounds else ""
                 return f"undecided{known}"
 
-    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
-        """Render in notebooks: a small table of what is known."""
-        rows = [("verdict", self.summary()), ("algorithm", self.algorithm), ("seconds", f"{self.seconds:.3f}")]
+    def evidence(self) -> list[tuple[str, str]]:
+        """Return what the answer rests on, as rows of a name and a text."""
+        rows = [("algorithm", self.algorithm), ("seconds", f"{self.seconds:.3f}")]
         if self.witness is not None:
-            rows += [("S1", _set_text(self.witness.S1)), ("S2", _set_text(self.witness.S2))]
+            rows += [("S1", labels_in_words(self.witness.S1)), ("S2", labels_in_words(self.witness.S2))]
         if self.bounds is not None:
             rows += [("r* at least", f"{self.bounds.lower.value} ({self.bounds.lower.reason})")]
             rows += [("r* at most", f"{self.bounds.upper.value} ({self.bounds.upper.reason})")]
-        body = "".join(f"<tr><th>{html.escape(k)}</th><td>{html.escape(v)}</td></tr>" for k, v in rows)
-        return {"text/plain": repr(self), "text/html": f"<table>{body}</table>"}
+        return rows
 
-
-def _set_text(labels: frozenset[Label]) -> str:
-    return "{" + ", ".join(sorted(map(repr, labels))) + "}"
+    def as_dict(self) -> dict[str, Any]:
+        """Return the answer as JSON-ready values (without the certificate, which is bytes of its own)."""
+        witness = self.witness
+        return {
+            "verdict": self.verdict.value,
+            "r": self.r,
+            "s": self.s,
+            "witness": None if witness is None else {
+                "S1": in_natural_order(witness.S1),
+                "S2": in_natural_order(witness.S2),
+            },
+            "bounds": None if self.bounds is None else self.bounds.as_dict(),
+            "s_bounds": None if self.s_bounds is None else self.s_bounds.as_dict(),
+            "profile": None if self.profile is None else {str(r): s for r, s in self.profile.items()},
+            "algorithm": self.algorithm,
+            "seconds": self.seconds,
+        }

@@ -1,8 +1,10 @@
 """Hypothesis strategies and assertions for property tests of resilient-consensus code (extra ``testing``).
 
 Every strategy keeps its promise *by construction*: an r-robust graph is drawn as a seed that is r-robust, nodes of
-in-degree at least r added to it, and more links; nothing is drawn and thrown away. The sizes are small, and shrinking
-ends in small graphs with nodes 0, 1, 2, ...: the fewest nodes, then the fewest extra links.
+in-degree at least r added to it, and more links; nothing is drawn and thrown away. The sizes are small. Shrinking
+drops nodes and links while the test goes on failing, so it ends in a graph with nodes 0, 1, 2, ... from which the
+strategy can drop nothing more: mostly, not always, one with the fewest nodes of all that fail. A graph prints as an
+expression that can be pasted: ``nx.Graph({0: [1], 1: []})``.
 
 >>> from hypothesis import given
 >>> from robustness.testing import assert_robust, r_robust_graphs
@@ -51,7 +53,7 @@ Draw = st.DrawFn
 def graphs(draw: Draw, *, min_nodes: int = 1, max_nodes: int = 7) -> nx.Graph:
     """Undirected graphs on nodes 0, 1, 2, ...
 
-    Shrinks to few nodes, then to few edges.
+    Shrinks towards few nodes, then few edges.
     """
     return _any_graph(draw, min_nodes, max_nodes, directed=False)
 
@@ -60,7 +62,7 @@ def graphs(draw: Draw, *, min_nodes: int = 1, max_nodes: int = 7) -> nx.Graph:
 def digraphs(draw: Draw, *, min_nodes: int = 1, max_nodes: int = 6) -> nx.DiGraph:
     """Directed graphs on nodes 0, 1, 2, ...
 
-    Shrinks to few nodes, then to few arcs.
+    Shrinks towards few nodes, then few arcs.
     """
     return _any_graph(draw, min_nodes, max_nodes, directed=True)
 
@@ -395,9 +397,9 @@ def _not_robust_graphs(draw: Draw, r: int, min_nodes: int, max_nodes: int, direc
 
 
 def _empty(n: int, directed: bool) -> nx.Graph:
-    import networkx as nx
+    from robustness.pasteable import PasteableDiGraph, PasteableGraph
 
-    graph: nx.Graph = nx.DiGraph() if directed else nx.Graph()
+    graph: nx.Graph = PasteableDiGraph() if directed else PasteableGraph()
     graph.add_nodes_from(range(n))
     return graph
 

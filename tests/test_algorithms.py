@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib
+import inspect
 import math
 import time
 from collections import Counter
@@ -16,8 +18,8 @@ from hypothesis import strategies as st
 
 import robustness as rb
 from robustness import ALGORITHMS, Digraph, Verdict
-from robustness.decision.algorithms import Answer, Limits, transform
-from robustness.errors import InvalidParameter
+from robustness.decision.algorithms import OPTIONS, Answer, transform
+from robustness.limits import Limits
 from tests.oracles import brute_profile, digraphs, graphs, is_violating, labelled_digraphs
 
 NO_LIMITS = Limits()
@@ -174,10 +176,37 @@ def test_a_limit_is_no_verdict(name):
         rb.is_r_robust(graph, 28, algorithm=name, time_limit=0.2)
 
 
+def decide_of(name):
+    return importlib.import_module(f"robustness.decision.algorithms.{name.replace('-', '_')}").decide
+
+
 @every_algorithm
 def test_an_unknown_option_is_refused(name):
-    with pytest.raises(InvalidParameter, match=name):
-        rb.check_rs_robustness(nx.cycle_graph(5), 2, algorithm=name, colour="red")
+    for graph in (nx.cycle_graph(5), nx.complete_graph(5), nx.empty_graph(1), nx.petersen_graph()):
+        for option in ("colour", "timeout"):
+            with pytest.raises(TypeError, match=f"'{option}'.*'{name}'"):
+                rb.check_rs_robustness(graph, 1, algorithm=name, **{option: 1})
+    assert set(inspect.signature(decide_of(name)).parameters) - {"graph", "r", "s", "limits"} == OPTIONS[name]
+
+
+@pytest.mark.parametrize("graph", [nx.complete_graph(5), nx.petersen_graph(), nx.gnp_random_graph(30, 0.5, seed=1)])
+def test_an_unknown_option_of_auto_is_refused_on_every_graph(graph):
+    for ask in (rb.check_rs_robustness, rb.is_r_robust):
+        with pytest.raises(TypeError, match="timeout"):
+            ask(graph, 2, timeout=1)
+    with pytest.raises(TypeError, match="timeout"):
+        rb.is_rs_robust(graph, 2, 1, timeout=1)
+    with pytest.raises(TypeError, match="timeout"):
+        rb.determine_robustness(graph, timeout=1)
+
+
+def test_a_type_error_inside_an_algorithm_is_no_fault_of_the_user(monkeypatch):
+    def broken(*_, **__):
+        raise TypeError("f() got an unexpected keyword argument 'colour'")
+
+    monkeypatch.setattr("robustness.decision.algorithms.exhaustive.decide", broken)
+    with pytest.raises(TypeError, match="colour"):
+        rb.check_rs_robustness(nx.cycle_graph(5), 2, algorithm="exhaustive")
 
 
 @every_algorithm

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from networkx.generators.atlas import graph_atlas_g
 
 import robustness as rb
-from robustness.decision.algorithms import Limits, exhaustive
+from robustness.decision.algorithms import exhaustive
 from robustness.decision.bounds import Growth, Settled, Spectral, all_bounds, bounds, settle
 from robustness.decision.bounds.cuts import closed_pair, degree_pair, half_split, separating_pair
 from robustness.decision.bounds.degree import degree_bound, robust_by_degree
@@ -22,6 +22,7 @@ from robustness.decision.bounds.growth import find_growth, growth_order
 from robustness.decision.bounds.spectral import is_positive_definite, prove_lambda_2_above, spectral_evidence
 from robustness.decision.front import robustness_profile
 from robustness.definitions import is_violation
+from robustness.limits import Limits
 from robustness.results import Verdict
 
 DEFINED = Limits()
@@ -168,10 +169,10 @@ class TestAgainstTheTruth:
     ) -> None:
         graph = digraph(nx.gnp_random_graph(n, density, seed=seed, directed=directed))
         profile = exact_profile(graph)
-        both = bounds(graph, time_budget=20)
+        both = bounds(graph)
         assert both.lower.value <= r_star(profile) <= both.upper.value
         for r, s in itertools.product(profile, (1, 2)):
-            found = settle(graph, r, s, time_budget=20)
+            found = settle(graph, r, s)
             if found is not None:
                 require_settled(graph, found, r, s)
                 assert (found.verdict is Verdict.ROBUST) == (profile[r] >= s)
@@ -209,13 +210,13 @@ class TestGrowth:
         ids=str,
     )
     def test_seeds_are_found_and_grow(self, graph: nx.Graph, r: int) -> None:
-        growth = find_growth(digraph(graph), r, time_budget=30)
+        growth = find_growth(digraph(graph), r)
         assert growth is not None
         require_growth(digraph(graph), growth, r, 1)
 
     def test_s_above_one(self) -> None:
         graph = digraph(nx.gnp_random_graph(40, 0.7, seed=1))
-        growth = find_growth(graph, 2, 3, time_budget=30)
+        growth = find_growth(graph, 2, 3)
         assert growth is not None
         require_growth(graph, growth, 2, 3)
 
@@ -307,7 +308,7 @@ class TestFront:
 
     def test_improvements_are_reported_as_they_come(self) -> None:
         seen: list[rb.Bounds] = []
-        final = bounds(digraph(nx.gnp_random_graph(40, 0.5, seed=1)), time_budget=20, on_bounds=seen.append)
+        final = bounds(digraph(nx.gnp_random_graph(40, 0.5, seed=1)), on_bounds=seen.append)
         assert seen[-1] == final
         for a, b in itertools.pairwise(seen):
             assert a.lower.value <= b.lower.value <= b.upper.value <= a.upper.value
@@ -327,11 +328,11 @@ class TestFront:
         ids=str,
     )
     def test_bounds_that_meet(self, graph: nx.Graph, robustness: int) -> None:
-        both = bounds(digraph(graph), time_budget=20)
+        both = bounds(digraph(graph))
         assert (both.lower.value, both.upper.value) == (robustness, robustness)
 
     def test_all_bounds_name_their_reasons(self) -> None:
-        lower, upper = all_bounds(digraph(nx.gnp_random_graph(30, 0.5, seed=1)), time_budget=20)
+        lower, upper = all_bounds(digraph(nx.gnp_random_graph(30, 0.5, seed=1)))
         assert {bound.reason.split(":")[0] for bound in lower} >= {"a node reaches all others", "growth", "spectral"}
         assert len(upper) == 3
         assert all(bound.witness is not None for bound in upper)
@@ -352,7 +353,7 @@ class TestLargeGraphs:
     )
     def test_settled(self, graph: object, r: int, verdict: Verdict) -> None:
         large = digraph(graph())  # type: ignore[operator]
-        found = settle(large, r, time_budget=20)
+        found = settle(large, r)
         assert found is not None
         assert found.verdict is verdict
         if found.pair is not None:

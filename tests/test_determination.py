@@ -9,15 +9,15 @@ import pytest
 
 import robustness as rb
 from robustness.decision import determination
-from robustness.decision.algorithms import Limits
 from robustness.decision.determination import _climb, _Work
 from robustness.definitions import is_violation
+from robustness.limits import Limits
 from robustness.results import Bound, Bounds
 
 
 def test_bounds_only_improve(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With hardly any time for the first search, every phase has its turn; none starts again from nothing."""
-    monkeypatch.setattr(determination, "_SHORT_SECONDS", 1e-6)
+    """With hardly any steps for the first search, every phase has its turn; none starts again from nothing."""
+    monkeypatch.setattr(determination, "_SHORT_STEPS", 1)
     graph = rb.Digraph.from_networkx(nx.random_regular_graph(8, 40, seed=1))
     seen: list[Bounds] = []
     result = rb.determine_robustness(graph, on_bounds=seen.append)
@@ -30,11 +30,11 @@ def test_bounds_only_improve(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("directed", [False, True])
 @pytest.mark.parametrize("seed", range(4))
 def test_the_climb_ends_below_the_upper_bound_or_at_a_pair(directed: bool, seed: int) -> None:
-    graph = rb.Digraph.from_networkx(nx.gnp_random_graph(21, 0.5, seed=seed, directed=directed))
+    graph = rb.Digraph.from_networkx(nx.gnp_random_graph(23, 0.5, seed=seed, directed=directed))
     exact = rb.determine_robustness(graph).r
     for upper in (exact, exact + 1, exact + 3):
         start = Bounds(Bound(0, "every graph is 0-robust"), Bound(upper, "assumed here"))
-        found = _climb(_Work(graph, "subset-search", Limits()), start, lambda _: None)
+        found = _climb(_Work(graph, "subset-search", Limits()), start, Limits(), lambda _: None)
         if upper > exact + 1:
             assert found.lower.value == found.upper.value == exact
             assert found.upper.witness is not None

@@ -151,10 +151,12 @@ class TestFilesInData:
         assert graph.directed
 
     def test_matrix_rows_are_senders(self) -> None:
-        assert list(decode_topology(b"0,1,0\n0,0,-2.5\n0,0,0\n", ".csv").arcs()) == [(0, 1), (1, 2)]
+        with pytest.warns(GraphWarning, match="row u, column v says that v hears u"):
+            assert list(decode_topology(b"0,1,0\n0,0,2.5\n0,0,0\n", ".csv").arcs()) == [(0, 1), (1, 2)]
         stream = io.BytesIO()
         np.save(stream, np.asfortranarray([[False, True], [False, False]]))
-        assert list(decode_topology(stream.getvalue(), ".npy").arcs()) == [(0, 1)]
+        with pytest.warns(GraphWarning, match="row u, column v says that v hears u"):
+            assert list(decode_topology(stream.getvalue(), ".npy").arcs()) == [(0, 1)]
 
     def test_paths_and_capital_suffixes(self, tmp_path: Path) -> None:
         path = tmp_path / "TWO NODES.G6"

@@ -15,8 +15,7 @@ import robustness as rb
 from robustness.decision.bounds.local_search import TINY, best_upper_bound, fewest_exempt, find_violation
 from robustness.decision.front import robustness_profile
 from robustness.definitions import is_violation, r_reachable_ids
-
-LONG = 30.0  # seconds: never reached, so that results depend on seeds alone
+from robustness.limits import Steps
 
 
 def digraph(graph: nx.Graph) -> rb.Digraph:
@@ -38,7 +37,7 @@ def digraphs(draw: st.DrawFn, least: int = 13, most: int = 18) -> rb.Digraph:
 @settings(max_examples=40, deadline=None)
 @given(digraphs(), st.integers(1, 6), st.integers(1, 4))
 def test_every_pair_found_is_a_violation(graph: rb.Digraph, r: int, s: int) -> None:
-    pair = find_violation(graph, r, s, time_budget=LONG, restarts=3)
+    pair = find_violation(graph, r, s, restarts=3)
     assert pair is None or is_violation(graph, pair.first, pair.second, r, s)
 
 
@@ -46,7 +45,7 @@ def test_every_pair_found_is_a_violation(graph: rb.Digraph, r: int, s: int) -> N
 @given(digraphs())
 def test_the_upper_bound_comes_with_its_pair_and_every_improvement_is_one(graph: rb.Digraph) -> None:
     steps = []
-    upper, pair = best_upper_bound(graph, time_budget=LONG, restarts=3, on_pair=lambda u, p: steps.append((u, p)))
+    upper, pair = best_upper_bound(graph, restarts=3, on_pair=lambda u, p: steps.append((u, p)))
     assert steps[-1] == (upper, pair)
     assert [u for u, _ in steps] == sorted({u for u, _ in steps}, reverse=True)
     assert all(is_violation(graph, p.first, p.second, u + 1, 1) for u, p in steps)
@@ -56,7 +55,7 @@ def test_the_upper_bound_comes_with_its_pair_and_every_improvement_is_one(graph:
 @settings(max_examples=20, deadline=None)
 @given(digraphs(), st.integers(1, 5))
 def test_the_count_of_exempt_nodes_is_that_of_the_pair(graph: rb.Digraph, r: int) -> None:
-    found = fewest_exempt(graph, r, time_budget=LONG, restarts=3)
+    found = fewest_exempt(graph, r, restarts=3)
     if found is not None:
         count, pair = found
         assert count == exempt(graph, pair, r)
@@ -105,7 +104,7 @@ def test_on_all_small_graphs_the_upper_bound_is_not_below_the_truth() -> None:
     ids=str,
 )
 def test_known_pairs_are_found(graph: nx.Graph, robustness: int) -> None:
-    upper, _ = best_upper_bound(digraph(graph), time_budget=LONG, lower=robustness, restarts=2000)
+    upper, _ = best_upper_bound(digraph(graph), lower=robustness, restarts=2000)
     assert upper == robustness or graph.number_of_nodes() <= TINY
 
 
@@ -114,7 +113,7 @@ def test_the_search_for_one_robustness_is_exact() -> None:
     for _ in range(60):
         graph = nx.gnp_random_graph(20, 0.08, seed=int(rng.integers(2**31)), directed=True)
         reaches_all = any(len(nx.descendants(graph, v)) == 19 for v in graph)
-        assert (find_violation(digraph(graph), 1, time_budget=LONG) is None) == reaches_all
+        assert (find_violation(digraph(graph), 1) is None) == reaches_all
 
 
 @pytest.mark.parametrize(("seed", "directed"), [(0, False), (1, False), (2, True), (3, True)])
@@ -123,7 +122,7 @@ def test_fewest_exempt_meets_the_exact_profile(seed: int, directed: bool) -> Non
     profile = robustness_profile(graph, algorithm="transform")
     greatest = max(r for r, s in profile.items() if s)
     for r, s in profile.items():
-        found = fewest_exempt(digraph(graph), r, time_budget=LONG, restarts=60)
+        found = fewest_exempt(digraph(graph), r, restarts=60)
         count = 13 if found is None else found[0]
         assert count == s if r >= greatest else count >= s
 
@@ -152,15 +151,15 @@ def test_labels_of_equal_text_stay_apart() -> None:
 
 def test_a_seed_fixes_the_pair_and_a_stop_ends_the_search() -> None:
     graph = digraph(nx.random_regular_graph(10, 60, seed=3))
-    runs = [find_violation(graph, 6, seed=5, time_budget=LONG) for _ in range(2)]
+    runs = [find_violation(graph, 6, seed=5) for _ in range(2)]
     assert runs[0] is not None
     assert runs[0] == runs[1]
-    assert find_violation(graph, 4, time_budget=LONG, stop=lambda: True) is None
+    assert find_violation(graph, 4, steps=Steps(stop=lambda: True)) is None
 
 
 def test_large_sparse_graphs_take_linear_memory_and_little_time() -> None:
     graph = digraph(nx.circulant_graph(20_000, [1, 2]))
-    pair = find_violation(graph, 3, time_budget=5)
+    pair = find_violation(graph, 3)
     assert pair is not None
     assert "in_words" not in vars(graph)
     assert "in_masks" not in vars(graph)

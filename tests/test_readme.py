@@ -49,7 +49,7 @@ def test_the_tour_of_the_command_line_runs(tmp_path: Path) -> None:
         assert done.stdout, line
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/getting-started.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/getting-started.md", "docs/simulation.md"])
 def test_the_python_example_prints_what_its_comments_say(page: str) -> None:
     (example,) = blocks((ROOT / page).read_text(encoding="utf-8"), "python")
     printed = io.StringIO()

@@ -13,8 +13,9 @@ import networkx as nx
 import pytest
 
 from robustness import Digraph, InternalError, InvalidParameter, Undecided, Verdict
-from robustness.decision.algorithms import Limits, Pair, cp_sat, milp, model_solving, transform
+from robustness.decision.algorithms import Pair, cp_sat, milp, model_solving, transform
 from robustness.decision.algorithms.violation_model import ViolationModel, all_pairs, compatible_pairs
+from robustness.limits import Limits
 from tests.oracles import brute_profile, digraphs, graphs, is_violating
 
 NO_LIMITS = Limits()
@@ -251,7 +252,8 @@ WAIT_FOR_CTRL_C = """
 import sys, time
 import networkx as nx
 from robustness import Digraph
-from robustness.decision.algorithms import Limits, {module}
+from robustness.decision.algorithms import {module}
+from robustness.limits import Limits
 graph = Digraph.from_networkx(nx.gnp_random_graph(60, 0.5, seed=1))
 begun = lambda progress: print("begun", flush=True)
 try:

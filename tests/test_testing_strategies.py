@@ -10,10 +10,10 @@ from hypothesis import HealthCheck, Phase, find, given, settings
 from hypothesis import strategies as st
 
 import robustness as rb
-from robustness.decision.algorithms import Limits
 from robustness.decision.algorithms.exhaustive import decide
 from robustness.digraph import as_digraph
 from robustness.errors import InvalidParameter, Undecided
+from robustness.limits import Limits
 from robustness.results import Verdict
 from robustness.testing import (
     assert_not_robust,
@@ -209,6 +209,46 @@ class TestShrinking:
     def test_a_malicious_set(self):
         assert shrunk(malicious_sets(nx.complete_graph(6), 3), lambda M: bool(M)) == {0}
         assert len(shrunk(malicious_sets(nx.path_graph(6), 1, model="local"), lambda M: len(M) >= 2)) == 2
+
+
+class TestPasting:
+    """What Hypothesis prints of a failing example makes the same example."""
+
+    @pytest.mark.parametrize(
+        "strategy",
+        [
+            graphs(),
+            digraphs(),
+            r_robust_graphs(2),
+            r_robust_graphs(2, directed=True),
+            rs_robust_graphs(2, 2),
+            time_varying_graphs(r=1),
+            time_varying_graphs(r=1, directed=True),
+            not_r_robust_graphs(2).map(lambda drawn: drawn[0]),
+        ],
+    )
+    def test_every_strategy(self, strategy):
+        @given(strategy)
+        def prints(drawn):
+            pasted = eval(repr(drawn), {"nx": nx})  # noqa: S307 - what it printed is what is pasted
+            pairs = zip(drawn, pasted, strict=True) if isinstance(drawn, list) else [(drawn, pasted)]
+            for one, other in pairs:
+                assert type(other) in (nx.Graph, nx.DiGraph)
+                assert nx.utils.graphs_equal(one, other)
+
+        prints()
+
+    def test_a_failing_example(self):
+        @given(r_robust_graphs(2))
+        @settings(database=None)
+        def fails(G):
+            raise AssertionError
+
+        with pytest.raises(AssertionError) as caught:
+            fails()
+        (note,) = (line.strip() for each in caught.value.__notes__ for line in each.splitlines() if "G=" in line)
+        (drawn,) = eval(f"({note.removeprefix('G=')}\n)", {"nx": nx})  # noqa: S307 - what it printed is what is pasted
+        assert nx.is_isomorphic(drawn, nx.complete_graph(3))
 
 
 class TestAssertions:

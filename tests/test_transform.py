@@ -12,7 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robustness import Digraph, Undecided, Verdict
-from robustness.decision.algorithms import Limits, exhaustive, transform
+from robustness.decision.algorithms import exhaustive, transform
+from robustness.limits import Limits
 from tests.oracles import brute_profile, digraphs, graphs, is_violating, labelled_digraphs
 
 NO_LIMITS = Limits()

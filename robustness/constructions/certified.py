@@ -15,9 +15,9 @@ from certificates.graph import Label, label_key
 from robustness.constructions.guarantee import Guarantee, Guaranteed
 from robustness.constructions.operations import carry_out, replay
 from robustness.decision.certification import direct_evidence, encode
-from robustness.decision.front import limits_of
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InternalError, InvalidParameter, Undecided
+from robustness.limits import Limits
 from robustness.results import RobustnessResult, Verdict
 
 __all__ = ["certify_derivation"]
@@ -84,7 +84,7 @@ def certify_derivation(
     if leaf.sha256 not in by_digest:
         raise InvalidParameter(f"the seed graph {leaf.sha256[:12]} is missing: give it in seeds")
     seed = by_digest[leaf.sha256]
-    proof = direct_evidence(seed, leaf.r, leaf.s, limits_of(started, time_limit, 1, 0, None))
+    proof = direct_evidence(seed, leaf.r, leaf.s, Limits.of(time_limit))
     if proof is None:
         why = "it is not, or the time limit is too short"
         raise Undecided(f"no proof was found that the seed is ({leaf.r},{leaf.s})-robust: {why}")
@@ -132,7 +132,12 @@ def _steps(conclusion: Guarantee, base: Guarantee, before: Digraph, after: Digra
         case "remove-nodes":
             gone = [i for i, label in enumerate(nodes) if label not in after.index]
             nodes[:] = [label for label in nodes if label in after.index]
-            return [{"rule": "remove-nodes", "nodes": gone}]
+            steps = [{"rule": "remove-nodes", "nodes": gone}]
+            # The operation cuts r and s to what few nodes can have; the kernel's rule does not, and the next step of
+            # the derivation was made for the pair that was cut.
+            if (conclusion.r, conclusion.s) != (base.r - _most_lost(before, after), base.s):
+                steps.append(_weaken(conclusion))
+            return steps
         case "blow-up":
             copies, cliques = (conclusion.parameters[name] for name in ("copies", "cliques"))
             nodes[:] = [(label, copy) for label in nodes for copy in range(copies)]
@@ -150,6 +155,13 @@ def _steps(conclusion: Guarantee, base: Guarantee, before: Digraph, after: Digra
         nodes.append(node)
         steps.append({"rule": "add-node", "hears": heard})
     return steps + _arc_step("add-arcs", new - old, nodes)
+
+
+def _most_lost(before: Digraph, after: Digraph) -> int:
+    """Return the most in-neighbours that a node which stays has among those that were removed."""
+    gone = {before.index[label] for label in before.labels if label not in after.index}
+    stay = (before.index[label] for label in after.labels)
+    return max((sum(j in gone for j in before.in_neighbours(i).tolist()) for i in stay), default=0)
 
 
 def _joined(base: Guarantee, before: Digraph, after: Digraph) -> int:

@@ -14,17 +14,19 @@ from typing import Any
 
 from certificates import MalformedCertificate, verify
 from certificates.verification import FORMAT
-from robustness.decision.algorithms import Limits, Pair, Progress
-from robustness.decision.front import check_rs_robustness, limits_of
+from robustness.decision.algorithms import Pair
+from robustness.decision.front import check_rs_robustness
 from robustness.decision.ladder import run
 from robustness.definitions import largest_conceivable_r, require_r_and_s
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InternalError, InvalidParameter
+from robustness.limits import Limits, Progress, Steps
 from robustness.results import RobustnessResult, Verdict, Witness
 
 __all__ = ["Evidence", "certify", "direct_evidence", "encode"]
 
-_HEURISTIC_SECONDS = 0.25
+#: What heuristics may spend before the exact search begins: about a quarter of a second.
+_HEURISTIC_STEPS = 250_000_000
 
 #: A header and a body: what stands in the certificate's first line as evidence, and what follows it.
 Evidence = tuple[dict[str, Any], bytes]
@@ -78,7 +80,7 @@ def certify(
         raise InvalidParameter(f"({r},{s})-robust on {graph.n} node(s) is settled by convention: nothing to certify")
     if evidence not in ("shortest", "refutation"):
         raise InvalidParameter(f"evidence is 'shortest' or 'refutation', not {evidence!r}")
-    limits = limits_of(started, time_limit, jobs, seed, progress)
+    limits = Limits.of(time_limit, jobs, seed, progress)
     if graph.n < 2 or r > largest_conceivable_r(graph.n):
         result = check_rs_robustness(graph, r, s)
         found: Evidence | None = ({"kind": "degree"}, b"")
@@ -111,8 +113,7 @@ def _search(graph: Digraph, r: int, s: int, limits: Limits, shortest: bool) -> t
     """Decide by bounds or by the recorded search, and return the result with its evidence."""
     from robustness.decision.bounds import Growth, settle
 
-    seconds = min(_HEURISTIC_SECONDS, limits.seconds_left())
-    settled = settle(graph, r, s, seed=limits.seed, time_budget=seconds, stop=limits.expired)
+    settled = settle(graph, r, s, seed=limits.seed, steps=Steps(_HEURISTIC_STEPS, limits.expired))
     if settled is not None and settled.pair is not None:
         return _result(graph, r, s, "bounds", Verdict.NOT_ROBUST, {"rule": settled.rule}, settled.pair)
     if not shortest:

@@ -7,35 +7,42 @@ s_max(r) to its own c, and one refutation at that candidate ends the descent.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Mapping
-from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any
 
-from robustness.decision.algorithms import Answer, Limits
-from robustness.decision.ladder import TRANSFORM_NODES, decide, exempt_count, run, witness_of
+from robustness.decision.algorithms import Answer
+from robustness.decision.ladder import decide, exempt_count, run, witness_of
 from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph
 from robustness.errors import InternalError, Undecided
+from robustness.limits import UNLIMITED, Limits, Steps
 from robustness.results import Bound, Bounds, RobustnessResult, Verdict
 
-__all__ = ["determine", "profile"]
+__all__ = ["EXACT_S_NODES", "PROFILE_NODES", "determine", "profile"]
 
-#: Seconds that heuristics for bounds on r* may take before the exact search begins.
-_HEURISTIC_SECONDS = 0.5
+#: Up to this many nodes ``auto`` reads the whole profile, and with it r* and s, off the subset-minimum transform, in a
+#: tenth of a second: O(n 2^n).
+PROFILE_NODES = 22
 
-#: Seconds of exact search before bounds that cost more are tried, and once more before local search goes on.
-_SHORT_SECONDS = 0.3
+#: Up to this many nodes s_max(r) is found by one transform where the search does not find it sooner: two seconds.
+EXACT_S_NODES = 28
 
-#: Seconds of the first turn of searches from below and from above; local search has half as long.
-_TURN_SECONDS = 2.0
+# Budgets, counted in steps (robustness.limits), so that the answer does not depend on the machine or its load. They
+# share what the user's time limit leaves, which alone may cut the work short.
 
-#: Restarts that only a time limit ends.
-_NO_END = 1 << 62
+#: What heuristics for bounds may spend before the exact search begins: about half a second.
+_HEURISTIC_STEPS = 500_000_000
 
-#: Up to this many nodes ``auto`` reads profiles off the subset-minimum transform: seconds.
-_TRANSFORM_PROFILE_NODES = 22
+#: What exact search may spend before bounds that cost more are tried, and once more before local search goes on.
+_SHORT_STEPS = 300_000_000
+
+#: The first turn of searches from below and from above; local search has half as much. Each turn has twice the last.
+_TURN_STEPS = 2_000_000_000
+
+#: What the search for s may spend on a graph of more nodes when nobody set a limit: about two seconds.
+_S_STEPS = 2_000_000_000
 
 
 @dataclass(slots=True)
@@ -48,19 +55,13 @@ class _Work:
     name: str = "transform"
     stats: dict[str, Any] = field(default_factory=dict)
 
-    def decide(self, r: int, s: int) -> Answer:
-        """Decide (r,s)-robustness, bounds first; sum counters and remember what decided."""
-        self.name, answer = decide(self.graph, r, s, self.algorithm, self.limits, {})
-        return self._count(answer)
-
-    def search(self, r: int, s: int) -> Answer:
+    def search(self, r: int, s: int, limits: Limits) -> Answer:
         """Decide (r,s)-robustness by an exact algorithm, after bounds have said what they can."""
-        if self.algorithm != "auto" or self.graph.n <= TRANSFORM_NODES:
-            return self.decide(r, s)
-        self.name = "subset-search"
-        return self._count(run(self.graph, r, s, self.name, self.limits, {}))
-
-    def _count(self, answer: Answer) -> Answer:
+        if self.algorithm != "auto":
+            self.name, answer = decide(self.graph, r, s, self.algorithm, limits, {})
+        else:
+            self.name = "subset-search"
+            answer = run(self.graph, r, s, self.name, limits, {})
         for key, value in answer.stats.items():
             is_count = isinstance(value, int) and not isinstance(value, bool)
             self.stats[key] = self.stats.get(key, 0) + value if is_count else value
@@ -78,34 +79,105 @@ def determine(
     if graph.n < 2:
         settled = Bound(graph.n, "convention for fewer than two nodes")
         bounds = Bounds(settled, settled)
-        return RobustnessResult(Verdict.DETERMINED, graph.n, 1, bounds=bounds, algorithm="definition")
+        table = MappingProxyType(dict.fromkeys(range(1, graph.n + 1), 1))
+        return RobustnessResult(
+            Verdict.DETERMINED, graph.n, 1, bounds=bounds, profile=table, algorithm="definition"
+        )
+    if algorithm == "auto" and graph.n <= PROFILE_NODES:
+        found = _read_off(graph, limits)
+        if found is not None:
+            return found
     work = _Work(graph, algorithm, limits)
     bounds = _greatest_r(work, on_bounds or (lambda _: None))
-    r, witness = bounds.lower.value, bounds.upper.witness
-    if r < bounds.upper.value:
+    r, witness, name = bounds.lower.value, bounds.upper.witness, work.name
+    is_known = r == bounds.upper.value
+    s_bounds = None
+    if not is_known:
         s = 1 if r else graph.n
-        return RobustnessResult(
-            Verdict.UNDECIDED, r, s, witness, bounds=bounds, algorithm=work.name, stats=work.stats
-        )
-    if r == 0:
-        # Every graph is (0,s)-robust.
-        return RobustnessResult(
-            Verdict.DETERMINED, 0, graph.n, witness, bounds=bounds, algorithm=work.name, stats=work.stats
-        )
-    name = work.name
-    if s_time_limit is not None:
-        work.limits = _until(limits, s_time_limit)
-    s_bounds = _greatest_s(work, r, known=1)
+    elif r == 0:
+        s = graph.n  # every graph is (0,s)-robust
+    else:
+        s_bounds = _greatest_s(work, r, 1, _limits_for_s(graph, algorithm, limits, s_time_limit))
+        s = s_bounds.lower.value
     return RobustnessResult(
-        Verdict.DETERMINED,
+        Verdict.DETERMINED if is_known else Verdict.UNDECIDED,
         r,
-        s_bounds.lower.value,
+        s,
         witness,
         bounds=bounds,
         s_bounds=s_bounds,
         algorithm=name,
         stats=work.stats,
     )
+
+
+def profile(graph: Digraph, algorithm: str, limits: Limits) -> Mapping[int, int]:
+    """Return ``r -> s_max(r)`` for r = 1 .. ceil(n/2), or raise Undecided with the part that is proven."""
+    if graph.n < 2:
+        return {1: 1} if graph.n else {}
+    if algorithm == "transform" or (algorithm == "auto" and graph.n <= PROFILE_NODES):
+        from robustness.decision.algorithms.transform import profile as transform_profile
+
+        return transform_profile(graph, limits)
+    work = _Work(graph, algorithm, limits)
+    table: dict[int, int] = {}
+    known = 0
+    for r in range(largest_conceivable_r(graph.n), 0, -1):
+        # (r,s)-robust implies (r-1,s+1)-robust: what was proven for r+1 starts the descent for r.
+        found = _greatest_s(work, r, min(known + 1, graph.n) if known else 0, limits)
+        if found.lower.value < found.upper.value:
+            raise Undecided(
+                f"s_max({r}) lies in {found.lower.value}..{found.upper.value}: raise the time limit",
+                bounds=found,
+                profile=MappingProxyType(dict(sorted(table.items()))),
+            )
+        table[r] = known = found.upper.value
+    return dict(sorted(table.items()))
+
+
+def _limits_for_s(graph: Digraph, algorithm: str, limits: Limits, s_time_limit: float | None) -> Limits:
+    """Return how hard to look for s: for as long as the user said, else until it is exact where that takes seconds."""
+    if s_time_limit is not None:
+        return limits.within(s_time_limit)
+    if limits.deadline is not None or algorithm != "auto" or graph.n <= EXACT_S_NODES:
+        return limits
+    return limits.counted(_S_STEPS)
+
+
+def _read_off(graph: Digraph, limits: Limits) -> RobustnessResult | None:
+    """Return r*, s and the profile from one transform, or None when a limit or the memory does not allow it."""
+    try:
+        table = profile(graph, "transform", limits)
+    except Undecided:
+        return None
+    r = max((r for r, s in table.items() if s), default=0)
+    lower = Bound(r, "transform refuted every violating pair" if r else "every graph is 0-robust")
+    upper = _trivial_upper(graph)
+    stats: dict[str, Any] = {"sets": 1 << graph.n}
+    if r < upper.value:
+        answer = run(graph, r + 1, 1, "transform", limits, {})
+        if answer.verdict is not Verdict.NOT_ROBUST:
+            return None
+        upper = Bound(r, "violating pair found by transform", witness_of(graph, answer.pair))
+    s = Bound(table[r], "transform") if r else Bound(graph.n, "every graph is (0,s)-robust")
+    return RobustnessResult(
+        Verdict.DETERMINED,
+        r,
+        s.value,
+        upper.witness,
+        bounds=Bounds(lower, upper),
+        s_bounds=Bounds(s, s) if r else None,
+        profile=MappingProxyType(table),
+        algorithm="transform",
+        stats=stats,
+    )
+
+
+def _trivial_upper(graph: Digraph) -> Bound:
+    """Return ``r* <= ceil(n/2)`` with its pair: in a balanced split nobody hears more than ceil(n/2) from outside."""
+    from robustness.decision.bounds.cuts import half_split
+
+    return Bound(largest_conceivable_r(graph.n), "r* <= ceil(n/2)", witness_of(graph, half_split(graph)))
 
 
 def _greatest_r(work: _Work, on_bounds: Callable[[Bounds], None]) -> Bounds:
@@ -116,11 +188,9 @@ def _greatest_r(work: _Work, on_bounds: Callable[[Bounds], None]) -> Bounds:
     refute: whichever way a graph is easy, it is decided that way, and a limit leaves a narrow interval.
     """
     graph, limits = work.graph, work.limits
-    found = Bounds(Bound(0, "every graph is 0-robust"), Bound(largest_conceivable_r(graph.n), "r* <= ceil(n/2)"))
-    if work.algorithm == "auto" and graph.n <= TRANSFORM_NODES:
-        found = _read_off(work, found)
-    if work.algorithm != "auto" or graph.n <= TRANSFORM_NODES:
-        return _descend(work, found, on_bounds)
+    found = Bounds(Bound(0, "every graph is 0-robust"), _trivial_upper(graph))
+    if work.algorithm != "auto":
+        return _descend(work, found, limits, on_bounds)
     from robustness.decision.algorithms.subset_search import MOST_NODES
     from robustness.decision.bounds import bounds
 
@@ -130,76 +200,44 @@ def _greatest_r(work: _Work, on_bounds: Callable[[Bounds], None]) -> Bounds:
             on_bounds(met)
 
     for thorough in (False, True):
-        cheap = bounds(
-            graph,
-            seed=limits.seed,
-            time_budget=min(_HEURISTIC_SECONDS, limits.seconds_left() / 2),
-            stop=limits.expired,
-            on_bounds=report,
-            thorough=thorough,
-        )
+        part = limits.share(1 / 2)
+        steps = Steps(_HEURISTIC_STEPS, part.expired)
+        cheap = bounds(graph, seed=limits.seed, steps=steps, on_bounds=report, thorough=thorough)
         work.name = work.name if work.stats else "bounds"  # a search has counters
         found = _meet(found, cheap)
-        work.limits = _until(limits, _SHORT_SECONDS)
-        found = _descend(work, found, on_bounds)
-    is_last, turn, seconds = False, 0, _TURN_SECONDS
+        found = _descend(work, found, _one_thread(limits, _SHORT_STEPS), on_bounds)
+    is_last, turn, budget = False, 0, _TURN_STEPS
     while found.lower.value < found.upper.value and not is_last and not limits.expired():
         # Which end gives way sooner is not known, so both have their turns, until one r is left.
         turn += 1
-        work.limits = limits
-        found = _look_for_pairs(work, found, min(seconds / 2, limits.seconds_left() / 4), turn, on_bounds)
-        work.limits = _until(limits, min(seconds, limits.seconds_left() / 4))
-        found = _climb(work, found, on_bounds)
+        found = _look_for_pairs(work, found, Steps(budget // 2, limits.share(1 / 4).expired), turn, on_bounds)
+        found = _climb(work, found, _one_thread(limits.share(1 / 4), budget), on_bounds)
         is_last = (turn > 1 and found.lower.value + 1 >= found.upper.value) or graph.n > MOST_NODES
-        work.limits = limits if is_last else _until(limits, seconds)
-        found = _descend(work, found, on_bounds)
-        seconds *= 2
-    work.limits = limits
+        found = _descend(work, found, limits if is_last else _one_thread(limits, budget), on_bounds)
+        budget *= 2
     return found
 
 
-def _until(limits: Limits, seconds: float) -> Limits:
-    """Return ``limits`` that end after so many seconds at the latest."""
-    ends = time.monotonic() + seconds
-    return replace(limits, deadline=ends if limits.deadline is None else min(ends, limits.deadline))
+def _one_thread(limits: Limits, steps: int) -> Limits:
+    """Return limits for a search that a budget may stop: one thread stops at the same place on every machine."""
+    return Limits(limits.deadline, 1, limits.seed, limits.progress, steps)
 
 
 def _look_for_pairs(
-    work: _Work, found: Bounds, seconds: float, turn: int, on_bounds: Callable[[Bounds], None]
+    work: _Work, found: Bounds, steps: Steps, turn: int, on_bounds: Callable[[Bounds], None]
 ) -> Bounds:
-    """Give local search so many seconds, from other starts each turn, to lower the upper bound."""
+    """Let local search, from other starts each turn, lower the upper bound until its steps are spent."""
     from robustness.decision.bounds.local_search import find_violation
 
-    ends, limits = time.monotonic() + seconds, work.limits
-    while found.lower.value < found.upper.value and (left := ends - time.monotonic()) > 0:
+    while found.lower.value < found.upper.value and not steps.over():
         r = found.upper.value
-        pair = find_violation(
-            work.graph, r, seed=limits.seed + turn, time_budget=left, restarts=_NO_END, stop=limits.expired
-        )
+        pair = find_violation(work.graph, r, seed=work.limits.seed + turn, steps=steps, restarts=UNLIMITED)
         if pair is None:
             break
         witness = witness_of(work.graph, pair)
         found = Bounds(found.lower, Bound(r - 1, "a violating pair found by local search", witness))
         on_bounds(found)
     return found
-
-
-def _read_off(work: _Work, found: Bounds) -> Bounds:
-    """Return bounds from the whole profile; the pair of the upper one is still found and re-checked by a decision."""
-    from robustness.decision.algorithms.transform import profile as transform_profile
-
-    try:
-        table = transform_profile(work.graph, work.limits)
-    except Undecided:
-        return found
-    r = max((r for r, s in table.items() if s), default=0)
-    lower = Bound(r, "transform refuted every violating pair") if r else found.lower
-    if r == found.upper.value:
-        return Bounds(lower, found.upper)
-    answer = run(work.graph, r + 1, 1, "transform", work.limits, {})
-    if answer.verdict is not Verdict.NOT_ROBUST:
-        return found
-    return Bounds(lower, Bound(r, "violating pair found by transform", witness_of(work.graph, answer.pair)))
 
 
 def _meet(one: Bounds, two: Bounds) -> Bounds:
@@ -209,10 +247,10 @@ def _meet(one: Bounds, two: Bounds) -> Bounds:
     return Bounds(lower, upper)
 
 
-def _descend(work: _Work, found: Bounds, on_bounds: Callable[[Bounds], None]) -> Bounds:
+def _descend(work: _Work, found: Bounds, limits: Limits, on_bounds: Callable[[Bounds], None]) -> Bounds:
     """Decide r = upper, upper - 1, ... until one holds or a limit is reached."""
     while found.lower.value < found.upper.value:
-        closer = _decided(work, found, found.upper.value)
+        closer = _decided(work, found, found.upper.value, limits)
         if closer is None:
             break
         found = closer
@@ -220,14 +258,14 @@ def _descend(work: _Work, found: Bounds, on_bounds: Callable[[Bounds], None]) ->
     return found
 
 
-def _climb(work: _Work, found: Bounds, on_bounds: Callable[[Bounds], None]) -> Bounds:
+def _climb(work: _Work, found: Bounds, limits: Limits, on_bounds: Callable[[Bounds], None]) -> Bounds:
     """Decide r = lower + 1, lower + 2, ... below the upper bound until a limit is reached.
 
     The cost of a refutation grows some hundredfold with each r near r*, so those below cost next to nothing together,
     while the one at the upper bound may never end.
     """
     while found.lower.value + 1 < found.upper.value:
-        closer = _decided(work, found, found.lower.value + 1)
+        closer = _decided(work, found, found.lower.value + 1, limits)
         if closer is None:
             break
         found = closer
@@ -235,9 +273,9 @@ def _climb(work: _Work, found: Bounds, on_bounds: Callable[[Bounds], None]) -> B
     return found
 
 
-def _decided(work: _Work, found: Bounds, r: int) -> Bounds | None:
+def _decided(work: _Work, found: Bounds, r: int, limits: Limits) -> Bounds | None:
     """Return the bounds after an exact search has decided r-robustness, or None when a limit stopped it."""
-    answer = work.search(r, 1)
+    answer = work.search(r, 1, limits)
     if answer.verdict is Verdict.UNDECIDED:
         return None
     if answer.verdict is Verdict.ROBUST:
@@ -246,7 +284,7 @@ def _decided(work: _Work, found: Bounds, r: int) -> Bounds | None:
     return Bounds(found.lower, Bound(r - 1, f"violating pair found by {work.name}", witness))
 
 
-def _greatest_s(work: _Work, r: int, known: int = 0) -> Bounds:
+def _greatest_s(work: _Work, r: int, known: int, limits: Limits) -> Bounds:
     """Return bounds on s_max(r), equal when decided; ``known`` is an s for which (r,s)-robustness is known.
 
     The cost of a refutation grows steeply with s, so s climbs from below, in doubling steps, towards an upper bound
@@ -256,11 +294,11 @@ def _greatest_s(work: _Work, r: int, known: int = 0) -> Bounds:
     lower = Bound(known, "implied by what is proven" if known else "nothing proven yet")
     upper = Bound(graph.n, "s_max(r) <= n")
     if work.algorithm == "auto":
-        lower, upper = _cheap_s(work, r, lower, upper)
+        lower, upper = _cheap_s(work, r, lower, upper, limits)
     step = 1
     while lower.value < upper.value:
         s = min(lower.value + step, upper.value)
-        answer = work.search(r, s)
+        answer = work.search(r, s, limits)
         if answer.verdict is Verdict.UNDECIDED:
             break
         if answer.verdict is Verdict.ROBUST:
@@ -273,49 +311,29 @@ def _greatest_s(work: _Work, r: int, known: int = 0) -> Bounds:
     return Bounds(lower, upper)
 
 
-def _cheap_s(work: _Work, r: int, lower: Bound, upper: Bound) -> tuple[Bound, Bound]:
-    """Return bounds on s_max(r) from the degree rule and from local search."""
+def _cheap_s(work: _Work, r: int, lower: Bound, upper: Bound, limits: Limits) -> tuple[Bound, Bound]:
+    """Return bounds on s_max(r): from the degree rule, from one transform on small graphs, and from local search."""
     from robustness.decision.bounds.degree import robust_by_degree
     from robustness.decision.bounds.local_search import fewest_exempt
 
     if robust_by_degree(work.graph, r):
         return Bound(work.graph.n, "degree rule: (r,s)-robust for every s"), upper
-    if work.graph.n <= _TRANSFORM_PROFILE_NODES:
-        from robustness.decision.algorithms.transform import profile as transform_profile
-
-        with suppress(Undecided):
-            exact = Bound(transform_profile(work.graph, work.limits)[r], "transform")
-            return exact, exact
-    seconds = min(_HEURISTIC_SECONDS, work.limits.seconds_left() / 4)
-    found = fewest_exempt(
-        work.graph,
-        r,
-        seed=work.limits.seed,
-        time_budget=seconds,
-        restarts=4,
-        lower=lower.value,
-        stop=work.limits.expired,
-    )
+    if work.graph.n <= EXACT_S_NODES:
+        exact = _by_transform(work.graph, r, limits)
+        if exact is not None:
+            return exact
+    steps = Steps(_HEURISTIC_STEPS, limits.share(1 / 4).expired)
+    found = fewest_exempt(work.graph, r, seed=limits.seed, steps=steps, restarts=4, lower=lower.value)
     if found is not None:
         upper = Bound(found[0], "a violating pair found by local search", witness_of(work.graph, found[1]))
     return lower, upper
 
 
-def profile(graph: Digraph, algorithm: str, limits: Limits) -> Mapping[int, int]:
-    """Return ``r -> s_max(r)`` for r = 1 .. ceil(n/2), or raise Undecided."""
-    if graph.n < 2:
-        return {1: 1} if graph.n else {}
-    if algorithm == "transform" or (algorithm == "auto" and graph.n <= _TRANSFORM_PROFILE_NODES):
-        from robustness.decision.algorithms.transform import profile as transform_profile
+def _by_transform(graph: Digraph, r: int, limits: Limits) -> tuple[Bound, Bound] | None:
+    from robustness.decision.algorithms.transform import largest_s
 
-        return transform_profile(graph, limits)
-    work = _Work(graph, algorithm, limits)
-    table: dict[int, int] = {}
-    known = 0
-    for r in range(largest_conceivable_r(graph.n), 0, -1):
-        # (r,s)-robust implies (r-1,s+1)-robust: what was proven for r+1 starts the descent for r.
-        found = _greatest_s(work, r, known=min(known + 1, graph.n) if known else 0)
-        if found.lower.value < found.upper.value:
-            raise Undecided(f"s_max({r}) lies in {found.lower.value}..{found.upper.value}: raise the time limit")
-        table[r] = known = found.upper.value
-    return dict(sorted(table.items()))
+    try:
+        s, pair = largest_s(graph, r, limits)
+    except Undecided:
+        return None
+    return Bound(s, "transform"), Bound(s, "transform", witness_of(graph, pair))

@@ -6,26 +6,26 @@ chosen and recorded, and every violating pair is re-checked against the definiti
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any
 
-from robustness.decision.algorithms import ALGORITHMS, Answer, Limits, Pair, Progress
+from robustness.decision.algorithms import Answer, Pair, require_algorithm, require_options
 from robustness.decision.determination import determine, profile
 from robustness.decision.ladder import decide, witness_of
 from robustness.definitions import largest_conceivable_r, require_r_and_s
 from robustness.digraph import Digraph, GraphLike, as_digraph
-from robustness.errors import InvalidParameter
+from robustness.limits import Limits, Progress
 from robustness.results import Bound, Bounds, RobustnessResult, Verdict
 
 __all__ = [
     "check_rs_robustness",
+    "check_within",
     "determine_robustness",
     "is_r_robust",
     "is_rs_robust",
-    "limits_of",
     "robustness_profile",
 ]
 
@@ -79,7 +79,7 @@ def check_rs_robustness(
     s : int
         In 1..n.
     algorithm : str
-        A name in ``ALGORITHMS``, or ``"auto"``: cheap bounds first, then ``transform`` on small graphs and
+        A name in ``ALGORITHMS``, or ``"auto"``: ``transform`` on up to 18 nodes; cheap bounds and then
         ``subset-search`` on all others. What decided is recorded in the result.
     time_limit : float, optional
         Wall-clock seconds; past it the verdict is UNDECIDED.
@@ -90,7 +90,7 @@ def check_rs_robustness(
     progress : callable, optional
         Called now and then with a :class:`~robustness.decision.algorithms.Progress`.
     **options
-        Passed to the algorithm; one that it does not know is an error.
+        Switches of the algorithm, listed in ``algorithms.OPTIONS``; they never change a verdict.
 
     Returns
     -------
@@ -101,6 +101,8 @@ def check_rs_robustness(
     ------
     InvalidGraph, InvalidParameter
         For input the definition does not speak about.
+    TypeError
+        For an option that the algorithm does not have.
 
     Notes
     -----
@@ -111,11 +113,26 @@ def check_rs_robustness(
     >>> check_rs_robustness(nx.cycle_graph(6), 2).verdict
     <Verdict.NOT_ROBUST: 'not-robust'>
     """
-    started = time.monotonic()
+    require_algorithm(algorithm)
+    require_options("check_rs_robustness", algorithm, options)
     graph = as_digraph(G)
     require_r_and_s(graph, r, s)
-    limits = limits_of(started, time_limit, jobs, seed, progress)
-    _require_algorithm(algorithm)
+    return check_within(graph, r, s, Limits.of(time_limit, jobs, seed, progress), algorithm, options)
+
+
+def check_within(
+    graph: Digraph,
+    r: int,
+    s: int,
+    limits: Limits,
+    algorithm: str = "auto",
+    options: Mapping[str, Any] = MappingProxyType({}),
+) -> RobustnessResult:
+    """Do what :func:`check_rs_robustness` does for a question that is known to be valid, within ``limits``.
+
+    For those of this package who have limits of their own, and budgets of steps with them.
+    """
+    started = time.monotonic()
     settled = _by_convention(graph, r, s)
     name, answer = settled if settled is not None else decide(graph, r, s, algorithm, limits, options)
     return _result(graph, r, s, name, answer, started)
@@ -129,7 +146,7 @@ def determine_robustness(
     jobs: int = 1,
     seed: int = 0,
     progress: Callable[[Progress], None] | None = None,
-    s_time_limit: float | None = 0.1,
+    s_time_limit: float | None = None,
     on_bounds: Callable[[Bounds], None] | None = None,
 ) -> RobustnessResult:
     """Return r*, the greatest r for which G is r-robust, and then the greatest s for which G is (r*,s)-robust.
@@ -138,8 +155,10 @@ def determine_robustness(
     ----------
     G, algorithm, time_limit, jobs, seed, progress
         As for :func:`check_rs_robustness`.
-    s_time_limit : float or None
-        Seconds that the search for s may go on once r* is known; None: until s is exact.
+    s_time_limit : float, optional
+        Seconds that the search for s may go on once r* is known. Without it the search uses what ``time_limit`` leaves;
+        and without that it goes on until s is exact on up to 28 nodes, when an algorithm is named, and otherwise for a
+        budget of steps (about two seconds).
     on_bounds : callable, optional
         Called with the proven :class:`~robustness.results.Bounds` on r* each time they improve.
 
@@ -147,8 +166,9 @@ def determine_robustness(
     -------
     RobustnessResult
         DETERMINED: ``r`` is r* exactly, ``s`` the greatest s that is proven, and ``s_bounds`` tells what s_max(r*) can
-        be (``s_is_exact`` when nothing else). UNDECIDED, when a limit stopped it before r* was known, with the best
-        proven r and ``bounds``. ``witness`` is a pair that violates (r* + 1, 1).
+        be (``s_is_exact`` when nothing else). ``profile`` is the whole table where it was computed on the way: on up to
+        22 nodes, unless an algorithm is named or a limit came first. UNDECIDED, when a limit stopped it before r* was
+        known, with the best proven r and ``bounds``. ``witness`` is a pair that violates (r* + 1, 1).
 
     Notes
     -----
@@ -161,12 +181,11 @@ def determine_robustness(
     """
     started = time.monotonic()
     graph = as_digraph(G)
-    _require_algorithm(algorithm)
-    limits = limits_of(started, time_limit, jobs, seed, progress)
-    if s_time_limit is not None:
-        _require_seconds("s_time_limit", s_time_limit)
+    require_algorithm(algorithm)
+    limits = Limits.of(time_limit, jobs, seed, progress)
+    limits.within(s_time_limit, "s_time_limit")
     found = determine(graph, algorithm, limits, s_time_limit, on_bounds)
-    return replace(found, seconds=time.monotonic() - started)
+    return replace(found, seconds=time.monotonic() - started, graph=graph)
 
 
 def robustness_profile(
@@ -190,36 +209,16 @@ def robustness_profile(
     Raises
     ------
     Undecided
-        When a limit stopped it; a partial profile would be a guess.
+        When a limit stopped it. Its ``profile`` holds the values that are proven by then, and its ``bounds`` the
+        interval of the r at which it stopped.
 
     >>> import networkx as nx
     >>> dict(robustness_profile(nx.wheel_graph(5)))
     {1: 5, 2: 5, 3: 0}
     """
     graph = as_digraph(G)
-    _require_algorithm(algorithm)
-    return profile(graph, algorithm, limits_of(time.monotonic(), time_limit, jobs, seed, progress))
-
-
-def limits_of(
-    started: float, time_limit: float | None, jobs: int, seed: int, progress: Callable[[Progress], None] | None
-) -> Limits:
-    """Return validated :class:`Limits`; ``started`` is a value of ``time.monotonic()``."""
-    if time_limit is not None:
-        _require_seconds("time_limit", time_limit)
-    if type(jobs) is not int or jobs < 1:
-        raise InvalidParameter(f"jobs is an integer of at least 1, not {jobs!r}")
-    return Limits(None if time_limit is None else started + time_limit, jobs, seed, progress)
-
-
-def _require_seconds(name: str, value: float) -> None:
-    if not (math.isfinite(value) and value > 0):
-        raise InvalidParameter(f"{name} is a positive, finite number of seconds, not {value!r}")
-
-
-def _require_algorithm(name: str) -> None:
-    if name != "auto" and name not in ALGORITHMS:
-        raise InvalidParameter(f"algorithm is 'auto' or one of {', '.join(ALGORITHMS)}, not {name!r}")
+    require_algorithm(algorithm)
+    return profile(graph, algorithm, Limits.of(time_limit, jobs, seed, progress))
 
 
 def _by_convention(graph: Digraph, r: int, s: int) -> tuple[str, Answer] | None:
@@ -246,6 +245,7 @@ def _result(graph: Digraph, r: int, s: int, name: str, answer: Answer, started: 
         algorithm=name,
         stats=answer.stats,
         seconds=time.monotonic() - started,
+        graph=graph,
     )
 
 

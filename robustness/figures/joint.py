@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping
 from itertools import groupby
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from robustness.errors import InvalidParameter, MissingExtra
+from robustness.figures.saving import new_figure, save_figure
+from robustness.figures.words import plain
 from robustness.results import Verdict
 from robustness.time_varying import JointResult, TimeVaryingGraph, Violation
 
@@ -16,8 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = ["draw_joint"]
 
-#: Told apart without colour too: the marks of failing windows are drawn taller. What comes later lies on top.
-_COLORS = {Verdict.ROBUST: "#3b7dbd", Verdict.UNDECIDED: "#9a9a9a", Verdict.NOT_ROBUST: "#c8402f"}
+#: The colour of every answer, of the title and of the windows alike.
+_COLORS = {Verdict.ROBUST: "#1b7f4d", Verdict.UNDECIDED: "#7a7a7a", Verdict.NOT_ROBUST: "#c8402f"}
 
 _WORDS = {Verdict.ROBUST: "robust", Verdict.UNDECIDED: "undecided", Verdict.NOT_ROBUST: "not robust"}
 
@@ -32,18 +33,18 @@ def draw_joint(
 ) -> None:
     """Draw a timeline to ``path``, in the format of its suffix.
 
-    Above: the arcs of every stored step, with the steps of the first failing window shaded. Below: one mark at the
-    start of every window that was decided, red and tall where its union fails. With a ``curve`` (as from
-    :func:`~robustness.time_varying.joint_curve`) a third panel shows the smallest window length for every r, and
-    ``result.tau``.
+    Above: the arcs of every stored step; where the answer is no, the steps of the first failing window are shaded.
+    Below: one mark at the start of every window that was decided, green where its union is robust, red and hatched
+    where it fails. With a ``curve`` (as from :func:`~robustness.time_varying.joint_curve`) a third panel shows the
+    smallest window length for every r, and ``result.tau``.
 
     Parameters
     ----------
     result : JointResult
         The answer: the title.
     shown : JointResult, optional
-        The one whose windows are drawn, ``result`` unless given. At the smallest window length nothing fails, so one
-        may prefer to see the length below it.
+        One about windows a step shorter. At the smallest length nothing fails; a small grey row shows where the length
+        below it does.
 
     Raises
     ------
@@ -52,39 +53,22 @@ def draw_joint(
     InvalidParameter
         When the suffix names no format that matplotlib writes.
     """
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise MissingExtra("drawing needs matplotlib: pip install 'graph-robustness[plot]'") from None
-    shown = result if shown is None else shown
     rows = 2 if curve is None else 3
-    figure = Figure(figsize=(9, 2.3 + 1.7 * rows), layout="constrained")
-    figure.suptitle(result.summary() + _tau_text(result))
+    figure = new_figure(9.4, 2.3 + 1.7 * rows)
+    figure.suptitle(plain(result.summary()) + _tau_text(result), color=_COLORS[result.verdict], fontweight="bold")
     panels = figure.subplots(rows, 1, squeeze=False, height_ratios=[2, 1, 2][:rows])[:, 0]
     panels[1].sharex(panels[0])
-    _draw_steps(panels[0], sequence, shown.violation)
-    _draw_windows(panels[1], shown)
+    _draw_steps(panels[0], sequence, result.violation)
+    _draw_windows(panels[1], result, None if shown is result else shown)
     if curve is not None:
         _draw_curve(panels[2], curve, result)
-    # No date and fixed ids: the same question gives the same file.
-    from matplotlib import rc_context
-
-    with rc_context({"svg.hashsalt": "robustness"}):
-        _save(figure, path)
+    save_figure(figure, path)
 
 
 def _tau_text(result: JointResult) -> str:
     if result.within_tau is None or result.window is None:
         return ""
     return f" ({'within' if result.within_tau else 'longer than'} the delay bound {result.tau})"
-
-
-def _save(figure: Any, path: str | os.PathLike[str]) -> None:
-    suffix = os.path.splitext(os.fspath(path))[1].lower()
-    known = sorted(figure.canvas.get_supported_filetypes())
-    if suffix.lstrip(".") not in known:
-        raise InvalidParameter(f"a picture's suffix is one of {', '.join('.' + one for one in known)}, not {suffix!r}")
-    figure.savefig(path, dpi=150, metadata={"Date": None} if suffix == ".svg" else None)
 
 
 def _draw_steps(axes: Axes, sequence: TimeVaryingGraph, failing: Violation | None) -> None:
@@ -118,31 +102,45 @@ def _stored_spans(sequence: TimeVaryingGraph, failing: Violation) -> Iterator[tu
             yield sequence.prefix, wrapped
 
 
-def _draw_windows(axes: Axes, result: JointResult) -> None:
-    verdicts = [result.union_verdicts[union].verdict for union in result.window_unions]
+def _draw_windows(axes: Axes, result: JointResult, shorter: JointResult | None) -> None:
+    """Draw the windows of the answer, and below them, smaller, those one step shorter that show why no less will do."""
     axes.set_yticks([])
     axes.set_ylim(0, 1.05)
-    if not verdicts:
+    if not result.window_unions and (shorter is None or not shorter.window_unions):
         axes.annotate("no window was decided", (0.5, 0.5), xycoords="axes fraction", ha="center", va="center")
         axes.set_xlabel("step")
         return
-    runs: dict[Verdict, list[tuple[int, int]]] = {verdict: [] for verdict in _COLORS}
-    start = 0
-    for verdict, run in groupby(verdicts):
-        width = sum(1 for _ in run)
-        runs[verdict].append((start, width))
-        start += width
-    for verdict, color in _COLORS.items():
-        if runs[verdict]:
-            height, outline = (0.5, 0) if verdict is Verdict.ROBUST else (1.0, 1)
-            label = f"{_WORDS[verdict]}: {sum(width for _, width in runs[verdict])}"
-            axes.broken_barh(
-                runs[verdict], (0, height), facecolors=color, edgecolors=color, linewidths=outline, label=label
-            )
+    floor = 0.35 if shorter is not None and shorter.window_unions else 0.0
+    for verdict, bars in _bars(result).items():
+        label = f"{_WORDS[verdict]}: {sum(width for _, width in bars)} windows"
+        # Told apart without colour too: robust windows are plain, the others hatched.
+        axes.broken_barh(
+            bars, (floor, 1.0 - floor), facecolors=_COLORS[verdict], edgecolors="white", linewidths=0,
+            hatch=None if verdict is Verdict.ROBUST else "///", label=label,
+        )  # fmt: skip
+    if floor and shorter is not None:
+        for verdict, bars in _bars(shorter).items():
+            if verdict is not Verdict.ROBUST:
+                count = sum(width for _, width in bars)
+                axes.broken_barh(
+                    bars, (0, 0.25), facecolors="#9a9a9a", edgecolors="#9a9a9a", linewidths=0.5,
+                    label=f"of {shorter.examined} step{'s' * (shorter.examined != 1)}: {count} {_WORDS[verdict]}",
+                )  # fmt: skip
     _legend(axes)
     name = f"{result.r}-robust" if result.s == 1 else f"({result.r},{result.s})-robust"
     steps = "1 step" if result.examined == 1 else f"{result.examined} steps"
     axes.set_xlabel(f"start of the window: is the union over {steps} {name}?")
+
+
+def _bars(result: JointResult) -> dict[Verdict, list[tuple[int, int]]]:
+    """Return the starts and the lengths of stretches of windows with the same verdict."""
+    runs: dict[Verdict, list[tuple[int, int]]] = {}
+    start = 0
+    for verdict, run in groupby(result.union_verdicts[union].verdict for union in result.window_unions):
+        width = sum(1 for _ in run)
+        runs.setdefault(verdict, []).append((start, width))
+        start += width
+    return runs
 
 
 def _draw_curve(axes: Axes, curve: Mapping[int, int | None], result: JointResult) -> None:

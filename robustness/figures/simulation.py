@@ -1,22 +1,26 @@
-"""Pictures of runs: positions and velocities against time, as in the source paper's six figures."""
+"""Pictures of runs: positions and velocities against time, groups told apart, and what the liars say."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from robustness.errors import InvalidParameter, MissingExtra
+from robustness.errors import InvalidParameter
+from robustness.figures.saving import new_figure, save_figure
+from robustness.figures.words import nodes_in_words, plain
+from robustness.simulation.adversaries import Alternating
 from robustness.simulation.dynamics import Floats, to_absolute
-from robustness.simulation.outcome import Outcome
+from robustness.simulation.outcome import Outcome, Trajectory
+from robustness.simulation.rules import rule_named
 from robustness.simulation.scenario import Scenario, Start
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["QUANTITIES", "Run", "draw_runs"]
+__all__ = ["GROUP_COLORS", "QUANTITIES", "Run", "draw_outcome", "draw_runs", "recorded", "run_title"]
 
 #: What can be drawn: the axis label of each quantity.
 QUANTITIES = {
@@ -25,8 +29,16 @@ QUANTITIES = {
     "relative-position": "relative to the moving target, p = x - kTr",
 }
 
-#: Told apart without colour as well.
-_DASHES = ("-", "--", "-.", ":")
+#: One colour for every group of vehicles that end together (Okabe and Ito's palette; the liars' red is left out).
+GROUP_COLORS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#8a6d00")
+
+_LIAR = "#d55e00"
+
+#: Told apart without colour as well: the vehicles of one group take turns.
+_DASHES = ("-", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 1)))
+
+#: So many groups are named; more than these are mostly vehicles that never met.
+_NAMED = 6
 
 
 class Run(NamedTuple):
@@ -42,10 +54,10 @@ def draw_runs(
     runs: Sequence[Run],
     path: str | os.PathLike[str],
     *,
-    quantities: Sequence[str] = ("relative-position", "velocity"),
+    quantities: Sequence[str] | None = None,
     last_step: int | None = None,
 ) -> None:
-    """Draw the normal vehicles of recorded runs against time, one row per run and one panel per quantity.
+    """Draw recorded runs against time, one row per run and one panel per quantity.
 
     Parameters
     ----------
@@ -53,8 +65,8 @@ def draw_runs(
         At least one.
     path : str or path
         The format is that of its suffix: ``.png``, ``.svg``, ``.pdf``.
-    quantities : sequence of str
-        Of :data:`QUANTITIES`.
+    quantities : sequence of str, optional
+        Of :data:`QUANTITIES`. By default positions relative to the target and, where some rule has them, velocities.
     last_step : int, optional
         Where the time axis ends.
 
@@ -65,61 +77,153 @@ def draw_runs(
     InvalidParameter
         When a run was not recorded, a quantity is unknown, or the suffix names no format.
     """
-    if not runs or any(run.outcome.trajectory is None for run in runs):
+    if not runs:
         raise InvalidParameter("only a recorded run can be drawn: simulate with record=True")
-    for quantity in quantities:
-        if quantity not in QUANTITIES:
-            raise InvalidParameter(f"a quantity is one of {', '.join(QUANTITIES)}, not {quantity!r}")
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise MissingExtra("drawing needs matplotlib: pip install 'graph-robustness[plot]'") from None
-    figure = Figure(figsize=(6.4 * len(quantities), 4.0 * len(runs)), layout="constrained")
+    for run in runs:
+        recorded(run)
+    if quantities is None:
+        moving = any(not rule_named(run.scenario.rule).first_order for run in runs)
+        quantities = ("relative-position", "velocity") if moving else ("relative-position",)
+    _require_quantities(quantities)
+    figure = new_figure(5.6 * len(quantities) + 2.2, 3.9 * len(runs))
     rows = figure.subplots(len(runs), len(quantities), squeeze=False)
     for run, panels in zip(runs, rows, strict=True):
         for panel, quantity in zip(panels, quantities, strict=True):
             _draw_quantity(panel, quantity, run, last_step)
-        panels[-1].legend(title="vehicle", loc="best", fontsize="small")
-        if len(runs) > 1:
-            panels[0].set_title(run.title, loc="left")
-    if len(runs) == 1 and runs[0].title:
-        figure.suptitle(runs[0].title)
-    _save(figure, path)
+        panels[0].set_title(run_title(run), loc="left", fontsize=10, wrap=True)
+        _legend(panels[-1], panels[0])
+    save_figure(figure, path)
+
+
+def draw_outcome(outcome: Any, ax: Axes | None = None, quantity: str = "relative-position") -> Axes:
+    """Draw one recorded run on axes, new ones of pyplot unless given, and return them; see :func:`draw_runs`."""
+    _require_quantities([quantity])
+    if not isinstance(outcome, Outcome) or outcome.scenario is None or outcome.start is None:
+        raise InvalidParameter("only a run of the simulator can be drawn")
+    run = Run(outcome.scenario, outcome.start, outcome)
+    recorded(run)
+    if ax is None:
+        new_figure(1, 1)  # says what is missing when matplotlib is
+        from matplotlib import pyplot as plt
+
+        ax = plt.subplots(figsize=(8.0, 4.2), layout="constrained")[1]
+    _draw_quantity(ax, quantity, run, None)
+    ax.set_title(run_title(run), loc="left", fontsize=10, wrap=True)
+    _legend(ax, ax)
+    return ax
+
+
+def recorded(run: Run) -> Trajectory:
+    """Return the states of a recorded run, or raise :class:`InvalidParameter`."""
+    if run.outcome.trajectory is None:
+        raise InvalidParameter("only a recorded run can be drawn: simulate with record=True")
+    return run.outcome.trajectory
+
+
+def run_title(run: Run) -> str:
+    """Return what a picture of the run says above it: its own title, the rule, the model and the verdict."""
+    scenario, outcome = run.scenario, run.outcome
+    how = f"{rule_named(scenario.rule).name}, f = {scenario.f}, {scenario.model}"
+    delays = "" if scenario.schedule.synchronous else f", values up to {scenario.schedule.oldest} steps old"
+    end = outcome.verdict.value + (", exactly" if outcome.exact else "")
+    if outcome.diverged_at is not None:
+        end += f" at step {outcome.diverged_at}"
+    return (f"{plain(run.title)}\n" if run.title else "") + plain(f"{how}{delays}: {end}")
+
+
+def _require_quantities(quantities: Sequence[str]) -> None:
+    for quantity in quantities:
+        if quantity not in QUANTITIES:
+            raise InvalidParameter(f"a quantity is one of {', '.join(QUANTITIES)}, not {quantity!r}")
 
 
 def _draw_quantity(panel: Axes, quantity: str, run: Run, last_step: int | None) -> None:
-    scenario, start = run.scenario, run.start
-    times, values = _values(quantity, scenario, run.outcome, last_step)
+    """Draw the normal vehicles, coloured by the group they end in, and for positions what the liars say."""
+    scenario, start, outcome, _ = run
     labels = scenario.network.union.labels
+    steps = _steps(run, last_step)
+    times = steps * scenario.T
+    values = _values(quantity, scenario, recorded(run), steps)
     normal = [i for i, label in enumerate(labels) if label not in start.malicious]
-    for place, i in enumerate(normal):
-        dashes = _DASHES[place // 10 % len(_DASHES)]
-        panel.plot(times, values[:, i], dashes, color=f"C{place % 10}", label=str(labels[i]))
+    for number, (value, group) in enumerate(outcome.groups):
+        color = GROUP_COLORS[number % len(GROUP_COLORS)]
+        for place, label in enumerate(group):
+            i = labels.index(label)
+            dashes = _DASHES[place % len(_DASHES)]
+            panel.plot(times, values[:, i], ls=dashes, lw=1.4, color=color, label="_")
+        if number < _NAMED:
+            panel.plot([], [], color=color, lw=2, label=f"{nodes_in_words(group, 5)} at {value:.4g}")
+    if len(outcome.groups) > _NAMED:
+        panel.plot([], [], lw=0, label=f"… {len(outcome.groups) - _NAMED} more")
+    if normal:
+        _fit(panel, values[:, normal])
+    if quantity != "velocity" and start.malicious:
+        _draw_claims(panel, quantity, run, steps)
+    if outcome.diverged_at is not None:
+        panel.axvline(outcome.diverged_at * scenario.T, color="black", lw=0.8, ls=":")
     panel.set_xlabel("time kT" if scenario.T != 1 else "step k")
-    panel.set_ylabel(QUANTITIES[quantity])
+    panel.set_ylabel(QUANTITIES[quantity] if scenario.target_speed or quantity == "velocity" else "position p")
     panel.grid(alpha=0.3)
 
 
-def _values(quantity: str, scenario: Scenario, outcome: Outcome, last_step: int | None) -> tuple[Floats, Floats]:
-    """Return the time axis and the values ``(steps, n)``, thinned to what a picture can show."""
-    states = outcome.trajectory
-    if states is None:  # draw_runs has checked it
-        raise InvalidParameter("only a recorded run can be drawn: simulate with record=True")
-    steps = np.arange(len(states.p))[: None if last_step is None else last_step + 1]
-    steps = steps[:: max(1, len(steps) // 2000)]
+def _fit(panel: Axes, shown: Floats) -> None:
+    """Scale to the normal vehicles: a liar far away would hide them."""
+    low, high = float(shown.min()), float(shown.max())
+    margin = 0.08 * (high - low) or 1.0
+    panel.set_ylim(low - margin, high + margin)
+
+
+def _draw_claims(panel: Axes, quantity: str, run: Run, steps: Any) -> None:
+    """Draw what every liar says, dashed; two faces as two lines, where one says different things in turn."""
+    scenario, start = run.scenario, run.start
+    labels, sent = scenario.network.union.labels, recorded(run).sent
+    for label in sorted(start.malicious, key=labels.index)[:3]:
+        i = labels.index(label)
+        for which, told in _faces(scenario, label, sent[:, i]):
+            chosen = steps[(steps % 2 == which) | (which < 0)]
+            claims = sent[chosen, i]
+            if quantity == "position":
+                claims = to_absolute(claims, claims, chosen, scenario.T, scenario.target_speed)[0]
+            panel.plot(chosen * scenario.T, claims, ls=(0, (4, 3)), lw=1.3, color=_LIAR, zorder=4, label=told)
+
+
+def _faces(scenario: Scenario, label: object, sent: Floats) -> Iterator[tuple[int, str]]:
+    """Yield the lines that show what a liar says: of all steps (-1), or of even (0) and odd ones (1)."""
+    name = plain(label)
+    adversary = scenario.adversary
+    if isinstance(adversary, Alternating) and adversary.sees_even and adversary.sees_odd:
+        yield 0, f"{name} shows {nodes_in_words(adversary.sees_even, 4)}"
+        yield 1, f"{name} shows {nodes_in_words(adversary.sees_odd, 4)}"
+        return
+    jumps = np.abs(np.diff(sent))
+    if len(jumps) >= 4 and np.median(jumps) > 0.2 * (np.ptp(sent) or 1.0):
+        yield 0, f"{name} says at even steps"
+        yield 1, f"{name} says at odd steps"
+        return
+    yield -1, f"{name} says"
+
+
+def _steps(run: Run, last_step: int | None) -> Any:
+    """Return the steps to draw, thinned to what a picture can show, even and odd ones alike; up to a divergence."""
+    states = len(recorded(run).p)
+    end = states if last_step is None else min(states, last_step + 1)
+    if run.outcome.diverged_at is not None:
+        end = min(end, run.outcome.diverged_at + 1)
+    pairs = np.arange(0, end, 2 * max(1, end // 2000))
+    return np.unique(np.minimum(np.concatenate([pairs, pairs + 1]), end - 1))
+
+
+def _values(quantity: str, scenario: Scenario, states: Trajectory, steps: Any) -> Floats:
+    """Return the values of all vehicles at these steps, shape ``(steps, n)``."""
     x, v = to_absolute(states.p[steps], states.q[steps], steps[:, None], scenario.T, scenario.target_speed)
-    chosen = {"position": x, "velocity": v, "relative-position": states.p[steps]}[quantity]
-    return np.asarray(steps * scenario.T, dtype=np.float64), chosen
+    return np.asarray({"position": x, "velocity": v, "relative-position": states.p[steps]}[quantity])
 
 
-def _save(figure: Any, path: str | os.PathLike[str]) -> None:
-    """Write the figure without a date and with fixed ids: the same run gives the same file."""
-    from matplotlib import rc_context
-
-    suffix = os.path.splitext(os.fspath(path))[1].lower().lstrip(".")
-    formats = figure.canvas.get_supported_filetypes()
-    if suffix not in formats:
-        raise InvalidParameter(f"a picture's suffix is one of {', '.join(sorted(formats))}, not {suffix!r}")
-    undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
-    with rc_context({"svg.hashsalt": "robustness"}):
-        figure.savefig(path, format=suffix, metadata=undated.get(suffix), dpi=110)
+def _legend(panel: Axes, named: Axes) -> None:
+    """Put the legend of ``named`` beside the last panel, where it covers no curve and is as tall as it needs."""
+    handles, told = named.get_legend_handles_labels()
+    if handles:
+        panel.legend(
+            handles, told, loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0, fontsize="small",
+            frameon=False,
+        )  # fmt: skip

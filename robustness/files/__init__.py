@@ -22,9 +22,7 @@ from __future__ import annotations
 import os
 import stat
 import sys
-import tempfile
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -34,6 +32,7 @@ from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidGraph, UnreadableTopology
 from robustness.files import edge_list, gml, graph6, matrix, node_link, topohub_names, xml_formats
 from robustness.files.text import one_line
+from robustness.files.writing import replace_file
 
 __all__ = [
     "FORMATS",
@@ -178,42 +177,6 @@ def write_topology(graph: GraphLike, path: str | os.PathLike[str]) -> None:
     """
     target = Path(path)
     replace_file(target, _format_of(target.suffix, str(target)).encode(as_digraph(graph)))
-
-
-def replace_file(path: str | os.PathLike[str], data: bytes) -> None:
-    """Write ``data`` to ``path`` whole or not at all: to a new file in the same directory, which is then renamed.
-
-    Raises
-    ------
-    OSError
-        Naming ``path``, when it cannot be written.
-    """
-    try:
-        _replace(Path(path), data)
-    except OSError as problem:  # which names the temporary file
-        raise OSError(problem.errno, problem.strerror or str(problem), str(path)) from None
-
-
-def _replace(target: Path, data: bytes) -> None:
-    handle, temporary = tempfile.mkstemp(prefix=f".{target.name[:64]}.", dir=target.parent)
-    try:
-        with open(handle, "wb") as stream:
-            stream.write(data)
-            os.fchmod(stream.fileno(), _permissions(target))
-        os.replace(temporary, target)
-    except BaseException:
-        with suppress(OSError):
-            os.unlink(temporary)
-        raise
-
-
-def _permissions(target: Path) -> int:
-    """Return the permissions of the file that is replaced, or those that a new file would get."""
-    with suppress(OSError):
-        return stat.S_IMODE(os.stat(target).st_mode)
-    mask = os.umask(0)
-    os.umask(mask)
-    return 0o666 & ~mask
 
 
 def _format_of(suffix: str, name: str) -> Format:

@@ -1,8 +1,9 @@
 """Node-link JSON, the default format: it keeps labels, isolated nodes and direction.
 
 ``{"directed": bool, "nodes": [{"id": label}, ...], "edges": [{"source": label, "target": label}, ...]}``.
-``links`` may stand for ``edges``; a list as label is a tuple; all other keys are ignored. It is read here and
-not by networkx, whose reader merges repeated labels and invents nodes for edges that join none.
+The canonical form that certificates are bound to (``certify --canonical``) is read as well. ``links`` may stand for
+``edges``; a list as label is a tuple; all other keys are ignored. It is read here and not by networkx, whose reader
+merges repeated labels and invents nodes for edges that join none.
 """
 
 from __future__ import annotations
@@ -12,6 +13,9 @@ import warnings
 from collections.abc import Hashable
 from typing import Any
 
+from certificates.errors import MalformedGraph
+from certificates.graph import FORMAT as CANONICAL_FORMAT
+from certificates.graph import decode_graph
 from robustness.digraph import Digraph, GraphWarning
 from robustness.errors import UnreadableTopology
 from robustness.files.text import decode_utf8
@@ -24,6 +28,8 @@ def decode(data: bytes) -> Digraph:
     document = _parse(decode_utf8(data))
     if not isinstance(document, dict):
         raise UnreadableTopology(f"node-link JSON is an object with 'nodes' and 'edges', not {_kind(document)}")
+    if document.get("format") == CANONICAL_FORMAT:
+        return _canonical(data)
     directed, multigraph = (_flag(document, key) for key in ("directed", "multigraph"))
     labels = _labels(_list(document, "nodes"))
     edges = _edges(document, labels)
@@ -32,6 +38,18 @@ def decode(data: bytes) -> Digraph:
     if not directed:
         edges += [(v, u) for u, v in edges if u != v]
     return Digraph(labels, edges, directed=directed)
+
+
+def _canonical(data: bytes) -> Digraph:
+    """Return the graph of the canonical form that certificates are bound to; as undirected when it is symmetric."""
+    try:
+        graph = decode_graph(data)
+    except MalformedGraph as problem:
+        raise UnreadableTopology(str(problem)) from None
+    arcs = {(j, i) for i, heard in enumerate(graph.hears) for j in heard}
+    directed = any((i, j) not in arcs for j, i in arcs)
+    labels = graph.labels
+    return Digraph(labels, ((labels[j], labels[i]) for j, i in arcs), directed=directed)
 
 
 def encode(graph: Digraph) -> bytes:

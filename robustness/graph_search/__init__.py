@@ -32,6 +32,7 @@ from robustness.graph_search.properties import (
     regular,
 )
 from robustness.graph_search.synthesis import synthesise
+from robustness.showing import Shown
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -64,8 +65,8 @@ class FindVerdict(enum.Enum):
     UNDECIDED = "undecided"
 
 
-@dataclass(frozen=True, slots=True)
-class FindResult:
+@dataclass(frozen=True, slots=True, repr=False)
+class FindResult(Shown):
     """What :func:`find_graph` returns.
 
     Attributes
@@ -106,6 +107,32 @@ class FindResult:
 
     def __bool__(self) -> bool:
         raise TypeError("a FindResult has three values, so it has no truth value: compare .verdict")
+
+    def summary(self) -> str:
+        """Return the answer in one line."""
+        none = f"none on {', '.join(map(str, self.impossible_for))} nodes" if self.impossible_for else ""
+        if self.verdict is FindVerdict.FOUND:
+            fewest = ", the fewest possible" if self.has_fewest_edges else ""
+            return f"found: {self.n} nodes, {self.edges} edges{fewest}" + (f"; {none}" if none else "")
+        return f"{self.verdict.value}: {none or 'a limit was reached'}"
+
+    def evidence(self) -> list[tuple[str, str]]:
+        """Return what the answer rests on, as rows of a name and a text."""
+        rows = [("method", self.method), ("seconds", f"{self.seconds:.3f}")]
+        return [*rows, *((str(name), str(value)) for name, value in self.stats.items())]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the answer as JSON-ready values; the graph as its list of edges."""
+        return {
+            "verdict": self.verdict.value,
+            "n": self.n,
+            "edges": None if self.graph is None else [list(edge) for edge in self.graph.edges],
+            "has_fewest_edges": self.has_fewest_edges,
+            "impossible_for": list(self.impossible_for),
+            "edges_at_least": self.edges_at_least,
+            "method": self.method,
+            "seconds": self.seconds,
+        }
 
 
 @dataclass(frozen=True, slots=True)

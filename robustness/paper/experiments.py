@@ -7,14 +7,15 @@ The paper leaves things open; every reading is stated where it is used and in ``
 * the values that vehicle 4 sends are read in the transformed coordinate p (its ``x_4[2k] = 2 + kTr`` moves along with
   the target, its 200 does not); the other reading, absolute positions, is run beside it;
 * vehicles that have not updated yet have heard nothing and only brake towards the target speed;
-* in Setting 2 vehicles 1 and 5 update at even steps, at which the last claim is 200, that of the odd step before.
+* in Setting 2 vehicles 1 and 5 update at even steps, at which the last claim is 200, that of the odd step before; that
+  they hear the true position at even steps is run beside it.
 """
 
 from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
@@ -25,14 +26,22 @@ from robustness.constructions.counterexamples import FIVE_NODE_READINGS, five_no
 from robustness.decision.front import check_rs_robustness
 from robustness.digraph import Digraph, as_digraph
 from robustness.errors import InternalError, InvalidParameter
+from robustness.paper.gain_cases import GainRun, gains_outside, push_runs, swap_runs
 from robustness.simulation.adversaries import Adversary, Alternating, Constant, Liar, TwoFace
 from robustness.simulation.attacks import attack_from_trap, attack_from_violation
 from robustness.simulation.gains import PromiseWarning
-from robustness.simulation.motion import Creep, InAbsolutePositions
+from robustness.simulation.motion import Creep, InAbsolutePositions, InTurns
 from robustness.simulation.outcome import Outcome
 from robustness.simulation.run import simulate
 from robustness.simulation.scenario import Scenario, Start
-from robustness.simulation.schedules import AdversarialDelays, AdversarialUpdates, PeriodicUpdates, Schedule
+from robustness.simulation.schedules import (
+    AdversarialDelays,
+    AdversarialUpdates,
+    EveryStep,
+    LatestDelays,
+    PeriodicUpdates,
+    Schedule,
+)
 from robustness.simulation.topology import Topology, as_topology
 from robustness.time_varying import TimeVaryingGraph, check_joint_robustness
 
@@ -54,8 +63,8 @@ class Case:
     reading : str
         What was read into the paper's text, or which condition holds.
     reported : str or None
-        The verdict that the paper reports or its theorem promises, ``"agreement"`` or ``"split"``; None: a reading
-        that is run for comparison only.
+        The verdict that the paper reports or that a theorem proves, ``"agreement"``, ``"split"`` or ``"divergence"``;
+        None: a reading that is run for comparison only.
     scenario : Scenario
     start : Start
     """
@@ -144,7 +153,11 @@ def _setting_2() -> tuple[Case, ...]:
         frame = _five_nodes(network, positions, gains, moving, **more)
         cases.append(Case(name, "claims and motion of vehicle 4 are transformed positions p", verdict, *frame))
     frame = _five_nodes(five_node_figure(), positions, gains, fixed, **more)
-    return (*cases, Case("figure read as wheel", "the motion of vehicle 4 is in absolute positions x", None, *frame))
+    cases.append(Case("figure read as wheel", "the motion of vehicle 4 is in absolute positions x", None, *frame))
+    honest: Adversary = Liar(InTurns(Creep(), Constant(200.0)), Creep())
+    frame = _five_nodes(five_node_figure(), positions, gains, honest, **more)
+    reading = "at even steps, where vehicles 1 and 5 update, vehicle 4 says where it is; 200 at odd ones"
+    return (*cases, Case("figure read as wheel", reading, None, *frame))
 
 
 def _proposition_1() -> tuple[Case, ...]:
@@ -221,7 +234,35 @@ def _corollary_2() -> tuple[Case, ...]:
     late = Schedule(delay_rule=AdversarialDelays(1), tau=2)
     scenario = attack.scenario(1000, network=topology, schedule=late)
     cases.append(Case("trapped wheel in halves, tau = 2", "jointly 2-robust only", "split", scenario, attack.start()))
-    return tuple(cases)
+    return (*cases, *_late_halves())
+
+
+def _late_halves() -> Iterator[Case]:
+    """Yield K_5 in two halves, jointly 3-robust over l = 2 steps: links remembered for longer than tau are lost."""
+    halves = []
+    for missing in ([(0, 3), (1, 2)], [(0, 2), (1, 3)]):
+        half = nx.complete_graph(5)
+        half.remove_edges_from(missing)
+        halves.append(half)
+    sequence = TimeVaryingGraph(halves, period=2)
+    window = check_joint_robustness(sequence, 3).window
+    start = Start([4], [0, 0, 100, 100, 50], [0] * 5)
+    liar = Alternating(0.0, 100.0, (0, 1), (2, 3))
+    for late, tau, verdict in ((2, 2, "split"), (1, 2, "agreement"), (2, 3, "agreement")):
+        scenario = Scenario(
+            sequence, 1, adversary=liar, schedule=Schedule(EveryStep(), LatestDelays(late), tau=tau), steps=2000,
+            groups=((0, 1), (2, 3)),
+        )  # fmt: skip
+        sign = "<=" if verdict == "agreement" else ">"
+        reading = f"jointly 3-robust over l = {window} <= tau steps, (l-1) + (g-1) + b = {1 + late} {sign} tau"
+        yield Case(f"K_5 in halves, all delays {late}, tau = {tau}", reading, verdict, scenario, start)
+
+
+def _about(runs: Callable[[], tuple[GainRun, ...]]) -> Callable[[], tuple[Case, ...]]:
+    def cases() -> tuple[Case, ...]:
+        return tuple(Case(run.name, run.reading, run.expected, run.scenario, run.start) for run in runs())
+
+    return cases
 
 
 def _corollary_1() -> tuple[Case, ...]:
@@ -272,6 +313,9 @@ EXPERIMENTS: Mapping[str, Experiment] = MappingProxyType(
             Experiment("gap", "Between the conditions: (f+1,f+1)-robust and trapped", _gap),
             Experiment("corollary-1", "Corollary 1: (2f+1)-robust under the f-local model", _corollary_1),
             Experiment("corollary-2", "Corollary 2: jointly (2f+1)-robust over at most tau steps", _corollary_2),
+            Experiment("gains-outside", "Outside the gain region: delays alone part vehicles", _about(gains_outside)),
+            Experiment("swap", "On the edge of the gain region: vehicles swap places for ever", _about(swap_runs)),
+            Experiment("push", "Theorem 1 with any positive gain: one liar, delays of one step", _about(push_runs)),
         )
     }
 )

@@ -13,7 +13,13 @@ from robustness.paper.experiments import CaseResult
 __all__ = ["draw_experiment"]
 
 #: Where the time axis ends, in steps: the transient and a little more.
-_LAST_STEPS = {"setting-1": 2500, "setting-2": 8000}
+_LAST_STEPS: dict[str, int | None] = {
+    "setting-1": 2500,
+    "setting-2": 8000,
+    "gains-outside": None,
+    "push": None,
+    "swap": 12,
+}
 
 
 def draw_experiment(name: str, results: Sequence[CaseResult], path: str | os.PathLike[str]) -> list[Path]:
@@ -40,13 +46,13 @@ def draw_experiment(name: str, results: Sequence[CaseResult], path: str | os.Pat
     place, last_step = Path(path), _LAST_STEPS.get(name, 60)
     runs = {
         re.sub(r"[^a-z0-9]+", "-", case.name.lower()).strip("-"): Run(
-            case.scenario, case.start, outcome, f"{name}, {case.name}: {outcome.verdict.value}"
+            case.scenario, case.start, outcome, f"{name}, {case.name}"
         )
         for case, outcome in ((result.case, result.outcome) for result in results)
         if case.reported is not None
     }
     moving = any(run.scenario.target_speed != 0 for run in runs.values())
-    quantities = ("position", "relative-position", "velocity") if moving else ("relative-position", "velocity")
+    quantities = ("position", "relative-position", "velocity") if moving else None
     if place.suffix and not place.is_dir():
         draw_runs(list(runs.values()), place, quantities=quantities, last_step=last_step)
         return [place]

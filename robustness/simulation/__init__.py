@@ -5,7 +5,7 @@ from __future__ import annotations
 from robustness.simulation.adversaries import ADVERSARIES
 from robustness.simulation.attacks import Attack, attack_from_trap, attack_from_violation
 from robustness.simulation.finding import find_attack
-from robustness.simulation.gains import PromiseWarning, gain_interval
+from robustness.simulation.gains import PromiseWarning
 from robustness.simulation.outcome import Outcome, RunVerdict, Trajectory
 from robustness.simulation.rules import RULES
 from robustness.simulation.run import simulate
@@ -32,7 +32,6 @@ __all__ = [
     "attack_from_trap",
     "attack_from_violation",
     "find_attack",
-    "gain_interval",
     "random_start",
     "schedule_named",
     "simulate",

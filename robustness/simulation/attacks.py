@@ -23,6 +23,7 @@ from certificates.graph import Label
 from robustness.definitions import is_violation, r_reachable_ids
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
+from robustness.showing import Shown
 from robustness.simulation.adversaries import Adversary, Alternating, Constant
 from robustness.simulation.models import fault_model_named, require_fault_model
 from robustness.simulation.outcome import Outcome
@@ -37,8 +38,8 @@ __all__ = ["Attack", "attack_from_trap", "attack_from_violation"]
 _LOW, _HIGH, _BETWEEN = 0.0, 100.0, 50.0
 
 
-@dataclass(frozen=True)
-class Attack:
+@dataclass(frozen=True, repr=False)
+class Attack(Shown):
     """A start, a malicious set and what it does, that split a network for ever. Made only from checked evidence.
 
     Attributes
@@ -110,6 +111,15 @@ class Attack:
         True
         """
         return simulate(self.scenario(steps, **changes), [self.start()], record=record)[0]
+
+    def summary(self) -> str:
+        """Return what it is, and the story."""
+        return f"{self.kind} for f = {self.f} ({self.model}): {self.story()}"
+
+    def evidence(self) -> list[tuple[str, str]]:
+        """Return the sets, as rows of a name and a text."""
+        sets = (("malicious", self.malicious), ("S1", self.S1), ("S2", self.S2))
+        return [(name, _text(self._ordered(labels))) for name, labels in sets]
 
     def story(self) -> str:
         """Return the attack in words."""

@@ -45,7 +45,7 @@ class Draws:
     def uniform(self, purpose: str, step: int, count: int) -> npt.NDArray[np.float64]:
         """Return independent uniform numbers in ``[0, 1)``, shape ``(B, count)``, multiples of ``2**-53``."""
         place = (_salt(purpose) + (step & _WORD) * _GOLDEN) & _WORD
-        from robustness.simulation.kernels import fill_uniform
+        from robustness.kernels.steps import fill_uniform
 
         stream = _mix(self._keys ^ _mix(np.array([place], dtype=np.uint64)))
         values = np.empty((len(stream), count))

@@ -8,16 +8,18 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
 
-from robustness.decision.algorithms import Progress
 from robustness.decision.front import check_rs_robustness
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
+from robustness.gain_region import gain_gap
+from robustness.limits import Progress
 from robustness.results import Verdict
 from robustness.simulation.attacks import Attack, attack_from_trap, attack_from_violation
+from robustness.simulation.gains import arc_weights, kept_weight_bound
 from robustness.traps import find_trap
 
 __all__ = ["ATTACK_MODELS", "Finding", "find_attack"]
@@ -26,15 +28,20 @@ __all__ = ["ATTACK_MODELS", "Finding", "find_attack"]
 #: differently, or to all alike with delays; and whether the bound is in all or around every normal node.
 ATTACK_MODELS = ("malicious", "malicious-local", "byzantine", "delayed", "delayed-local")
 
-#: For every model but the first: how many faces a liar has, whether the bound is local, the fault model, and whether
-#: "no attack of this kind" is all that agreement needs.
-_KINDS: Mapping[str, tuple[int, bool, str, bool]] = MappingProxyType(
+#: For every model but the first: how many faces a liar has, whether the bound is local, and the fault model.
+_KINDS: Mapping[str, tuple[int, bool, str]] = MappingProxyType(
     {
-        "malicious-local": (1, True, "malicious-local", False),
-        "byzantine": (2, False, "byzantine", True),
-        "delayed": (2, False, "malicious", False),
-        "delayed-local": (2, True, "malicious-local", False),
+        "malicious-local": (1, True, "malicious-local"),
+        "byzantine": (2, False, "byzantine"),
+        "delayed": (2, False, "malicious"),
+        "delayed-local": (2, True, "malicious-local"),
     }
+)
+
+#: What agreement rests on besides the graph, said with every answer that promises it.
+_CONDITION = (
+    "for W-MSR, and for second-order vehicles whose gains satisfy s = sigma T² < 1 and "
+    "2 sqrt(s) - s/2 <= alpha T <= 2 - s/2"
 )
 
 
@@ -47,7 +54,8 @@ class Finding:
     attack : Attack or None
     outcome : str
         What the network does under the worst attack of the model: ``"split"`` with an attack, ``"agreement"`` when a
-        theorem promises it, ``"undecided"`` when a limit stopped the search or the theory leaves the case open.
+        theorem promises it, ``"undecided"`` when a limit stopped the search, or when gains were given for which the
+        theorem says nothing.
     reason : str
         In words.
     """
@@ -67,6 +75,9 @@ def find_attack(
     jobs: int = 1,
     seed: int = 0,
     progress: Callable[[Progress], None] | None = None,
+    T: float | None = None,
+    alpha: float | None = None,
+    sigma: float | None = None,
 ) -> Finding:
     """Find an attack of f nodes that splits the network for ever, or prove that none exists.
 
@@ -77,12 +88,15 @@ def find_attack(
         At least 0.
     model : str
         ``"malicious"``: synchronous, f-total; decided by (f+1,f+1)-robustness. ``"byzantine"``: synchronous, f-total;
-        decided by traps. ``"delayed"``: with delays, f-total; a trap splits, (2f+1)-robustness promises agreement, and
-        between the two the case is open. ``"malicious-local"`` and ``"delayed-local"``: with at most f malicious
-        in-neighbours of every normal node; likewise open in between.
+        ``"delayed"``: with delays, f-total; ``"delayed-local"``: with at most f malicious in-neighbours of every normal
+        node; decided by traps. ``"malicious-local"``: synchronous, decided by local violations.
     algorithm, time_limit, jobs, seed, progress
         As for :func:`robustness.check_rs_robustness`; the time limit is for everything together, and the algorithm is
         used for checks of robustness (traps have one of their own).
+    T, alpha, sigma : float, optional
+        Sampling period, gain, and a bound on the weights that a vehicle keeps: when one is given, agreement is only
+        promised inside :mod:`robustness.gain_region`. Those not given are 1, 1.5 / T, and what weights ``1/d`` add up
+        to without the f smallest. An attack splits for all gains.
 
     Returns
     -------
@@ -90,7 +104,8 @@ def find_attack(
 
     Notes
     -----
-    At most one exact check of robustness and one exact search for a trap; both exponential in the worst case.
+    At most one exact check of robustness and one exact search for a trap; both exponential in the worst case. That no
+    trap (no local violation) is enough for agreement is proven in docs/theorems.md, Theorems A and B.
 
     >>> import networkx as nx
     >>> [find_attack(nx.wheel_graph(5), 1, model).outcome for model in ("malicious", "byzantine", "delayed")]
@@ -105,9 +120,25 @@ def find_attack(
         return Finding(None, "agreement", "fewer than two nodes: nobody to disagree with")
     deadline = float("inf") if time_limit is None else time.monotonic() + time_limit
     options: dict[str, Any] = {"algorithm": algorithm, "jobs": jobs, "seed": seed, "progress": progress}
+    gap = _gap(graph, f, T, alpha, sigma)
     if model == "malicious":
-        return _find_violation(graph, f, deadline, options)
-    return _find_by_search(graph, f, model, deadline, options)
+        found = _find_violation(graph, f, deadline, options)
+    else:
+        found = _find_by_search(graph, f, model, deadline, options)
+    if found.outcome != "agreement":
+        return found
+    if gap is None:
+        return replace(found, reason=f"{found.reason}, {_CONDITION}")
+    return Finding(None, "undecided", f"{found.reason} under W-MSR, but with these gains nothing is promised: {gap}")
+
+
+def _gap(graph: Digraph, f: int, T: float | None, alpha: float | None, sigma: float | None) -> str | None:
+    """Return why the gains lie outside their region, or None when they lie inside or none was given."""
+    if T is None and alpha is None and sigma is None:
+        return None
+    period = 1.0 if T is None else T
+    most = float(kept_weight_bound(graph, arc_weights(graph, "uniform"), f).max()) if sigma is None else sigma
+    return gain_gap(period, 1.5 / period if alpha is None else alpha, most)
 
 
 def _find_violation(graph: Digraph, f: int, deadline: float, options: dict[str, Any]) -> Finding:
@@ -124,14 +155,13 @@ def _find_violation(graph: Digraph, f: int, deadline: float, options: dict[str, 
 
 def _find_by_search(graph: Digraph, f: int, model: str, deadline: float, options: dict[str, Any]) -> Finding:
     """Return the attack that the trap search finds, or what its absence proves."""
-    faces, local, faults, exact = _KINDS[model]
-    robust = None
-    if not exact:
-        # A promise of agreement spares the search; where it takes long, the search gets half of the time.
-        left = _left(deadline)
-        half = None if left is None else left / 2
-        robust = check_rs_robustness(graph, 2 * f + 1, time_limit=half, **options).verdict
-        if robust is Verdict.ROBUST:
+    faces, local, faults = _KINDS[model]
+    # (2f+1)-robust graphs have no attack of these kinds, which spares the search; that check gets half of the time.
+    left = _left(deadline)
+    half = None if left is None else left / 2
+    if model != "byzantine":
+        strong = check_rs_robustness(graph, 2 * f + 1, time_limit=half, **options)
+        if strong.verdict is Verdict.ROBUST:
             return Finding(None, "agreement", f"{2 * f + 1}-robust: f = {f} nodes do not split it, two-faced or not")
     del options["algorithm"]
     found = find_trap(graph, f, faces=faces, local=local, time_limit=_left(deadline), **options)
@@ -144,13 +174,9 @@ def _find_by_search(graph: Digraph, f: int, model: str, deadline: float, options
         else:
             attack = attack_from_trap(graph, f, *sets, model=faults)
         return Finding(attack, "split", f"{'trapped' if faces == 2 else 'held apart'}: {attack.story()}")
-    if exact:
-        return Finding(None, "agreement", f"{f + 1}-robust without any {f} nodes: {f} Byzantine ones do not split it")
-    what = "trap" if faces == 2 else "violation"
-    known = "not" if robust is Verdict.NOT_ROBUST else "not known to be"
-    return Finding(
-        None, "undecided", f"no {what} for f = {f}, but {known} {2 * f + 1}-robust: the theory leaves this case open"
-    )
+    bound = "f-local set of nodes" if local else f"{f} nodes"
+    known = f"{f + 1}-robust without any {bound}" if faces == 2 else "no local violation"
+    return Finding(None, "agreement", f"{known}: f = {f} do not split it")
 
 
 def _left(deadline: float) -> float | None:

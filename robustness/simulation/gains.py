@@ -1,59 +1,93 @@
-"""Gains and weights, and the condition under which the theory of second-order MSR rules applies.
+"""Gains and weights of a network of vehicles, and whether the theory of second-order MSR rules applies to each.
 
-Derivation. Let ``sigma_i[k]`` be the sum of the weights that vehicle i keeps. Eliminating the velocity from
-``p[k+1] = p + T q + T²/2 u``, ``q[k+1] = q + T u``, ``u = -(L[k] p) - alpha q`` gives, row by row,
-
-    p_i[k+2] = (2 - alpha_i T - T²/2 sigma_i[k+1]) p_i[k+1] + T²/2 sum_j a_ij[k+1] p_j[k+1]
-             + (alpha_i T - 1 - T²/2 sigma_i[k]) p_i[k]     + T²/2 sum_j a_ij[k] p_j[k].
-
-The coefficients add up to 1. They are nonnegative, so that every new position is a convex combination of earlier
-ones, exactly when ``1 + T²/2 sigma <= alpha T <= 2 - T²/2 sigma``. With weights that add up to at most 1 this is
-the condition ``1 + T²/2 <= alpha T <= 2 - T²/2`` of Dibaji and Ishii. Delayed values only move the positions of
-the neighbours further back, so the condition is the same under delays. The source paper's own example
-(T = 0.01, alpha = 2 to 10) has alpha T <= 0.1 and lies outside: there nothing is promised.
+The region of gains is :mod:`robustness.gain_region`; here it is asked vehicle by vehicle, with the greatest sum of
+weights that the filter lets each keep. The source paper's own example (T = 0.01, alpha = 2 to 10) lies inside when kept
+weights add up to at most 1; with unit weights on K_5 they add up to 3, and alpha = 2 and 3 lie outside.
 """
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
+from robustness.gain_region import gain_gap, hull_velocity_factor
 from robustness.simulation.dynamics import Floats
 from robustness.simulation.rules import Rule
 
-__all__ = ["PromiseWarning", "arc_weights", "gain_interval", "kept_weight_bound", "node_gains", "promise_gap"]
+__all__ = ["Fleet", "PromiseWarning", "arc_weights", "fleet_of", "kept_weight_bound", "node_gains"]
 
 
 class PromiseWarning(UserWarning):
     """The run is well defined, but outside the hypotheses of the theorems: nothing is promised about it."""
 
 
-def gain_interval(T: float, sigma: float = 1.0) -> tuple[float, float]:
-    """Return the least and greatest ``alpha T`` for which new positions are convex combinations of old ones.
+@dataclass(frozen=True, slots=True, eq=False)
+class Fleet:
+    """How the n vehicles of a network move, with A arcs in the order of ``graph.in_indices``.
 
-    Parameters
+    Attributes
     ----------
+    rule : Rule
     T : float
         The sampling period.
-    sigma : float
-        A bound on the sum of the weights a vehicle keeps.
-
-    Returns
-    -------
-    tuple of float
-        ``(1 + T²/2 sigma, 2 - T²/2 sigma)``; empty (first above second) when ``sigma T² > 1``.
-
-    >>> gain_interval(1.0)
-    (1.5, 1.5)
+    alpha : array, shape ``(n,)``
+        The gain of every vehicle; unused by first-order rules.
+    weight : array, shape ``(A,)``
+        The weight of every arc.
+    gaps : tuple of n
+        For every vehicle why the theory promises nothing about it, in one line, or None.
+    coasting : array, shape ``(n,)``
+        The factor c of the hull of all ``p`` and ``p + c q``, see :func:`robustness.gain_region.hull_velocity_factor`;
+        0 where there is a gap and for first-order rules.
     """
-    return 1 + T * T / 2 * sigma, 2 - T * T / 2 * sigma
+
+    rule: Rule
+    T: float
+    alpha: Floats
+    weight: Floats
+    gaps: tuple[str | None, ...]
+    coasting: Floats
+
+    def gap(self, vehicles: Iterable[int]) -> str | None:
+        """Return why nothing is promised about a run whose normal vehicles have these ids, or None."""
+        return next((self.gaps[i] for i in vehicles if self.gaps[i] is not None), None)
+
+
+def fleet_of(
+    graph: Digraph,
+    rule: Rule,
+    f: int,
+    T: float,
+    alpha: float | Mapping[Hashable, float] | None,
+    weights: str | Mapping[tuple[Hashable, Hashable], float],
+) -> Fleet:
+    """Return the vehicles of a network: gains and weights by id, and what the theory says about each.
+
+    First-order rules have no gain: every new value is a convex combination by construction. For them weights are
+    relative to an own weight of 1, and ``"uniform"`` means the same as ``"unit"``.
+    """
+    gains = node_gains(graph, alpha, T)
+    weight = arc_weights(graph, "unit" if rule.first_order and weights == "uniform" else weights)
+    gaps: list[str | None] = [None] * graph.n
+    coasting = np.zeros(graph.n)
+    if rule.update is not None:
+        gaps = ["no theorem is about an update rule of one's own: nothing is promised about this run"] * graph.n
+    elif not rule.first_order:
+        for i, sigma in enumerate(kept_weight_bound(graph, weight, f).tolist()):
+            gap = gain_gap(T, float(gains[i]), sigma)
+            if gap is None:
+                coasting[i] = hull_velocity_factor(T, float(gains[i]), sigma)
+            else:
+                gaps[i] = f"outside the gains of the theory at node {graph.labels[i]!r}, nothing is promised: {gap}"
+    return Fleet(rule, T, gains, weight, tuple(gaps), coasting)
 
 
 def node_gains(graph: Digraph, alpha: float | Mapping[Hashable, float] | None, T: float) -> Floats:
-    """Return ``alpha_i`` for every id, shape ``(n,)``; None stands for ``1.5 / T``, the middle of the interval."""
+    """Return ``alpha_i`` for every id, shape ``(n,)``; None: ``1.5 / T``, in the region for every sigma T² < 1."""
     if alpha is None:
         gains = np.full(graph.n, 1.5 / T)
     elif isinstance(alpha, Mapping):
@@ -99,22 +133,3 @@ def kept_weight_bound(graph: Digraph, weights: Floats, f: int) -> Floats:
     """
     rows = (np.sort(weights[a:b])[f:].sum() for a, b in zip(graph.in_indptr[:-1], graph.in_indptr[1:], strict=True))
     return np.fromiter(rows, dtype=np.float64, count=graph.n)
-
-
-def promise_gap(graph: Digraph, rule: Rule, f: int, T: float, alpha: Floats, weights: Floats) -> str | None:
-    """Return why the gains lie outside the theory, in one line, or None when they lie inside.
-
-    First-order rules have no gain: every new value is a convex combination by construction.
-    """
-    if rule.first_order:
-        return None
-    sigma = kept_weight_bound(graph, weights, f)
-    for i in range(graph.n):
-        low, high = gain_interval(T, float(sigma[i]))
-        product = float(alpha[i]) * T
-        if not low * (1 - 1e-12) <= product <= high * (1 + 1e-12):
-            return (
-                f"the theory of {rule.name} needs {low:.6g} <= alpha T <= {high:.6g} at node {graph.labels[i]!r}, "
-                f"where alpha T = {product:.6g}: nothing is promised about this run"
-            )
-    return None

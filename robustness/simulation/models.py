@@ -48,9 +48,9 @@ FAULT_MODELS: Mapping[str, FaultModel] = MappingProxyType(
 )
 
 
-def fault_model_named(name: str) -> FaultModel:
+def fault_model_named(name: object) -> FaultModel:
     """Return the fault model of this name, or raise :class:`InvalidParameter` naming those there are."""
-    if name not in FAULT_MODELS:
+    if not (isinstance(name, str) and name in FAULT_MODELS):
         raise InvalidParameter(f"a fault model is one of {', '.join(FAULT_MODELS)}, not {name!r}")
     return FAULT_MODELS[name]
 

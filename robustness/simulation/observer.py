@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from robustness.simulation.adversaries.protocol import Setting
+from robustness.simulation.contraction import proven_contraction
 from robustness.simulation.dynamics import Floats
 from robustness.simulation.formation import node_offsets
+from robustness.simulation.gains import Fleet
 from robustness.simulation.outcome import (
     Outcome,
     Trajectory,
@@ -28,17 +31,24 @@ _ROUNDING = 1e-9
 class Observer:
     """Watches B runs.
 
-    The safety interval: with gains inside the theory every new position of a normal vehicle is a convex combination
-    of positions of normal vehicles at earlier steps (see :mod:`robustness.simulation.gains`; whatever the filter keeps
-    lies between values of normal vehicles). So all of them stay in the hull of the normal positions at steps 0 and 1,
-    which is checked at every step. For first-order rules step 0 alone would do.
+    Safety: with gains inside the region the hull of all ``p`` and ``p + c q`` of normal vehicles never grows, see
+    :mod:`robustness.gain_region` (whatever the filter keeps lies between values of normal vehicles). Before step 0
+    everybody stands at its initial position. So no normal position ever leaves the hull of the start, which is checked
+    at every step; for first-order rules q = 0.
     """
 
     def __init__(
-        self, setting: Setting, scenario: Scenario, starts: Sequence[Start], promise: str | None, *, record: bool
+        self,
+        setting: Setting,
+        fleet: Fleet,
+        scenario: Scenario,
+        starts: Sequence[Start],
+        promises: Sequence[str | None],
+        *,
+        record: bool,
     ) -> None:
         states, runs, n = scenario.steps + 1, len(starts), setting.graph.n
-        self.setting, self.scenario, self.promise = setting, scenario, promise
+        self.setting, self.scenario, self.starts, self.promises = setting, scenario, starts, promises
         self.low, self.high = np.zeros((states, runs)), np.zeros((states, runs))
         self.speed = np.zeros((states, runs))
         self.normal = ~setting.malicious
@@ -49,6 +59,13 @@ class Observer:
         if scenario.groups is not None:
             self._watch(*(sorted(setting.graph.ids(group)) for group in scenario.groups))
         self.record = [np.zeros((states, runs, n)) for _ in range(3)] if record else None
+        velocities = np.array([start.velocities for start in starts]).reshape(runs, n)
+        self.ahead = setting.initial + (0.0 if fleet.rule.first_order else fleet.coasting * velocities)
+        self.contraction = [
+            proven_contraction(setting.graph, fleet, scenario.f, int(row.sum()), scenario.schedule)
+            if scenario.network.fixed else None
+            for row in self.normal
+        ]  # fmt: skip
 
     def _watch(self, first: list[int], second: list[int]) -> None:
         """Watch the normal nodes of two groups, each of which starts in agreement and apart from the other."""
@@ -64,9 +81,9 @@ class Observer:
 
     def see(self, step: int, p: Floats, q: Floats, sent: Floats) -> None:
         """Measure the states ``p, q (B, n)`` of one step."""
-        from robustness.simulation.kernels import extremes
+        from robustness.kernels.steps import extremes
 
-        extremes(p, q, self.normal, self.low[step], self.high[step], self.speed[step])
+        extremes(p, q, self.normal.view(np.uint8), self.low[step], self.high[step], self.speed[step])
         if self.scenario.groups is not None:
             moved = self.watched & ((p != self.setting.initial) | (q != 0.0))
             self.unchanged &= ~moved.any(axis=1)
@@ -75,40 +92,47 @@ class Observer:
                 store[step] = values
         self.final = p
 
-    def outcomes(self) -> tuple[Outcome, ...]:
-        """Return the outcome of every run."""
-        return tuple(self._outcome(b) for b in range(self.low.shape[1]))
+    def outcomes(self, diverged: npt.NDArray[np.int64]) -> tuple[Outcome, ...]:
+        """Return the outcome of every run, given the steps ``(B,)`` at which they diverged (-1: not)."""
+        return tuple(self._outcome(b, int(step)) for b, step in enumerate(diverged))
 
-    def _outcome(self, b: int) -> Outcome:
-        scenario, setting = self.scenario, self.setting
+    def _outcome(self, b: int, diverged: int) -> Outcome:
+        scenario, setting, stopped = self.scenario, self.setting, diverged >= 0
         if not self.normal[b].any():
             self.low[:, b] = self.high[:, b] = 0.0
         spread, speed = self.high[:, b] - self.low[:, b], self.speed[:, b]
         limit = scenario.tolerance * (float(spread[0]) or 1.0)
         verdict, exact = verdict_of(
             spread, speed, limit, scenario.dwell_steps,
-            watched=scenario.groups is not None, unchanged=bool(self.unchanged[b]),
+            watched=scenario.groups is not None, unchanged=bool(self.unchanged[b]), diverged=stopped,
         )  # fmt: skip
         states = None if self.record is None else Trajectory(*(store[:, b].copy() for store in self.record))
         return Outcome(
             verdict=verdict,
             exact=exact,
+            diverged_at=diverged if stopped else None,
             spread=float(spread[-1]),
             initial_spread=float(spread[0]),
             speed=float(speed[-1]),
-            since=settled_since(spread, limit),
-            rate=convergence_rate(spread),
-            safe=self._safe(b),
-            promise=self.promise,
+            since=None if stopped else settled_since(spread, limit),
+            rate=None if stopped else convergence_rate(spread),
+            contraction=self.contraction[b],
+            safe=self._safe(b, stopped=stopped),
+            promise=self.promises[b],
             groups=groups_of(self.final[b], self.normal[b], setting.graph.labels, limit),
             trajectory=states,
+            scenario=scenario,
+            start=self.starts[b],
         )
 
-    def _safe(self, b: int) -> bool | None:
-        """Return whether the safety interval was kept, or None where the theory promises none."""
-        if self.promise is not None:
+    def _safe(self, b: int, *, stopped: bool) -> bool | None:
+        """Return whether the hull of the start was kept, or None where the theory promises none."""
+        if self.promises[b] is not None:
             return None
-        low, high = self.low[:, b], self.high[:, b]
-        floor, ceiling = low[:2].min(), high[:2].max()
+        normal = self.normal[b]
+        if stopped or not normal.any():
+            return not stopped
+        ends = np.concatenate([self.setting.initial[b, normal], self.ahead[b, normal]])
+        floor, ceiling = float(ends.min()), float(ends.max())
         slack = _ROUNDING * max(ceiling - floor, abs(floor), abs(ceiling), 1e-300)
-        return bool((low >= floor - slack).all() and (high <= ceiling + slack).all())
+        return bool((self.low[:, b] >= floor - slack).all() and (self.high[:, b] <= ceiling + slack).all())

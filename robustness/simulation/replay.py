@@ -17,6 +17,7 @@ from typing import Any
 
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter, RobustnessError
+from robustness.files.writing import replace_file
 from robustness.simulation import adversaries, motion, schedules
 from robustness.simulation.outcome import Outcome
 from robustness.simulation.scenario import Scenario, Start
@@ -32,10 +33,11 @@ _KINDS: Mapping[str, type] = MappingProxyType(
         for kind in (
             Scenario, Start, Topology, schedules.Schedule, schedules.EveryStep, schedules.PeriodicUpdates,
             schedules.RandomUpdates, schedules.AdversarialUpdates, schedules.NoDelays, schedules.ConstantDelays,
-            schedules.RandomDelays, schedules.AdversarialDelays, adversaries.Alternating, adversaries.Constant,
+            schedules.PeriodicDelays, schedules.RandomDelays, schedules.AdversarialDelays, schedules.LatestDelays,
+            adversaries.Alternating, adversaries.Constant,
             adversaries.Crash, adversaries.ExtremeValue, adversaries.Greedy, adversaries.Liar, adversaries.Noise,
             adversaries.Omission, adversaries.Ramp, adversaries.Sine, adversaries.TwoFace, motion.Creep,
-            motion.InAbsolutePositions,
+            motion.InAbsolutePositions, motion.InTurns, motion.Push, motion.Withholding,
         )
     }
 )  # fmt: skip
@@ -80,7 +82,7 @@ def decode_run(document: Any) -> tuple[Scenario, Start]:
 
 def write_run(path: Path, scenario: Scenario, start: Start, outcome: Outcome | None = None) -> None:
     """Write one run to a file, so that :func:`read_run` gives it back."""
-    path.write_text(json.dumps(encode_run(scenario, start, outcome), indent=1) + "\n", encoding="utf-8")
+    replace_file(path, (json.dumps(encode_run(scenario, start, outcome), indent=1) + "\n").encode())
 
 
 def read_run(path: Path) -> tuple[Scenario, Start]:

@@ -30,8 +30,10 @@ __all__ = [
     "ConstantDelays",
     "DelayRule",
     "EveryStep",
+    "LatestDelays",
     "NoDelays",
     "Past",
+    "PeriodicDelays",
     "PeriodicUpdates",
     "RandomDelays",
     "RandomUpdates",
@@ -241,6 +243,38 @@ class ConstantDelays:
 
 
 @dataclass(frozen=True, slots=True)
+class PeriodicDelays:
+    """Every arc has the same delay, which changes from step to step and repeats.
+
+    Parameters
+    ----------
+    steps : tuple of int
+        The delay at step k is ``steps[k % len(steps)]``.
+    """
+
+    steps: tuple[int, ...]
+
+    def __post_init__(self) -> None:
+        if not self.steps or min(self.steps) < 0:
+            raise InvalidParameter("periodic delays are one or more numbers of steps, each of at least 0")
+
+    @property
+    def bound(self) -> int:
+        """The greatest of the delays."""
+        return max(self.steps)
+
+    @property
+    def adversarial(self) -> bool:
+        """False."""
+        return False
+
+    def delays(self, view: View, past: Past) -> Steps:
+        """Return the delay of this step, for every arc."""
+        late = self.steps[view.step % len(self.steps)]
+        return np.full((1, view.setting.graph.arc_count), late, dtype=np.int64)
+
+
+@dataclass(frozen=True, slots=True)
 class RandomDelays:
     """Every arc and step has a delay drawn uniformly from ``0 .. bound``, from the run's own seed."""
 
@@ -280,15 +314,33 @@ class AdversarialDelays:
 
     def delays(self, view: View, past: Past) -> Steps:
         """Return the delay that serves each arc's receiver worst."""
-        from robustness.simulation.kernels import worst_delays
+        from robustness.kernels.steps import worst_delays
 
         setting = view.setting
         low, high = setting.normal_range(view.p)
         delays = np.empty((len(view.p), len(past.channel)), dtype=np.int64)
-        worst_delays(
-            view.step, self.bound, past.ring, past.channel, setting.heads, view.p > (low + high) / 2, delays
-        )
+        above = (view.p > (low + high) / 2).view(np.uint8)
+        worst_delays(view.step, self.bound, past.ring, past.channel, setting.heads, above, delays)
         return delays
+
+
+@dataclass(frozen=True, slots=True)
+class LatestDelays:
+    """Every value arrives ``bound`` steps late, unless an adversary's move says otherwise."""
+
+    bound: int = 2
+
+    def __post_init__(self) -> None:
+        _require_nonnegative("the bound on delays", self.bound)
+
+    @property
+    def adversarial(self) -> bool:
+        """True."""
+        return True
+
+    def delays(self, view: View, past: Past) -> Steps:
+        """Return the bound for every arc."""
+        return np.full((1, view.setting.graph.arc_count), self.bound, dtype=np.int64)
 
 
 @dataclass(frozen=True, slots=True)

@@ -304,17 +304,22 @@ def _play_batch(task: tuple[Scenario, list[Start]]) -> tuple[Counterexample | No
     scenario, starts = task
     unsettled = []
     for start, outcome in zip(starts, simulate(scenario, starts), strict=True):
-        if outcome.verdict is RunVerdict.SPLIT or outcome.safe is False:
+        if _breaks_the_promise(outcome):
             return Counterexample(scenario, start, outcome), 0, len(starts)
         if outcome.verdict is RunVerdict.UNDECIDED:
             unsettled.append(start)
     undecided = 0
     longer = replace(scenario, steps=8 * scenario.steps)
     for start, outcome in zip(unsettled, simulate(longer, unsettled), strict=True):
-        if outcome.verdict is RunVerdict.SPLIT or outcome.safe is False:
+        if _breaks_the_promise(outcome):
             return Counterexample(longer, start, outcome), 0, len(starts)
         undecided += outcome.verdict is RunVerdict.UNDECIDED
     return None, undecided, len(starts)
+
+
+def _breaks_the_promise(outcome: Outcome) -> bool:
+    """Return whether a run is a counterexample: apart for good, out of all bounds, or outside its hull."""
+    return outcome.verdict in (RunVerdict.SPLIT, RunVerdict.DIVERGENCE) or outcome.safe is False
 
 
 def _saved(report: ValidationReport, path: Path | None) -> ValidationReport:

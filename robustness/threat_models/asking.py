@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, overload
 
-from robustness.decision.algorithms import Limits, Progress
-from robustness.decision.front import limits_of
 from robustness.digraph import GraphLike, as_digraph
 from robustness.errors import InvalidParameter
+from robustness.limits import Limits, Progress
 from robustness.threat_models.deciding import Decisions
 from robustness.threat_models.judging import judge
 from robustness.threat_models.models import THREAT_MODELS, threat_model_named
@@ -27,6 +25,8 @@ def tolerance(
     model: str,
     *,
     tau: int | None = None,
+    delay: int | None = None,
+    gap: int | None = None,
     time_limit: float | None = None,
     jobs: int = 1,
     seed: int = 0,
@@ -40,6 +40,8 @@ def tolerance(
     model: None = None,
     *,
     tau: int | None = None,
+    delay: int | None = None,
+    gap: int | None = None,
     time_limit: float | None = None,
     jobs: int = 1,
     seed: int = 0,
@@ -52,6 +54,8 @@ def tolerance(
     model: str | None = None,
     *,
     tau: int | None = None,
+    delay: int | None = None,
+    gap: int | None = None,
     time_limit: float | None = None,
     jobs: int = 1,
     seed: int = 0,
@@ -68,7 +72,11 @@ def tolerance(
         A name in ``THREAT_MODELS``: ``"malicious"``, ``"malicious-local"``, ``"byzantine"``, ``"delayed"`` or
         ``"delayed-local"``. Without one: all of them, as a table.
     tau : int, optional
-        For a time-varying network, and only there: the bound on delays and on the age of values, at least 1.
+        For a time-varying network, and only there, at least 1: how many steps after it was sent a value is still used,
+        also through a link that has gone.
+    delay, gap : int, optional
+        With tau: the bound on delays, at least 1 (tau unless given), and the longest gap between two updates of a
+        vehicle (1 unless given). Only windows of l steps with ``(l - 1) + (gap - 1) + delay <= tau`` promise anything.
     time_limit : float, optional
         Wall-clock seconds in all; what is not decided by then is UNDECIDED and claimed by nobody.
     jobs, seed, progress
@@ -102,28 +110,37 @@ def tolerance(
     >>> table["delayed"].attack.malicious
     frozenset({0})
     """
-    started = time.monotonic()
-    limits = limits_of(started, time_limit, jobs, seed, progress)
-    decisions, names = _questions(G, model, tau, limits)
+    limits = Limits.of(time_limit, jobs, seed, progress)
+    decisions, names = _questions(G, model, (tau, delay, gap), limits)
     over = over_time if isinstance(decisions, JointDecisions) else threat_model_named
     results = tuple(judge(decisions, over(name)) for name in names)
     if isinstance(decisions, JointDecisions):
-        results = tuple(replace(result, sequence=decisions.sequence, tau=decisions.tau) for result in results)
+        window = decisions.longest_window
+        results = tuple(
+            replace(result, sequence=decisions.sequence, tau=decisions.tau, longest_window=window) for result in results
+        )
     return results[0] if model is not None else ToleranceTable(decisions.graph, results)
 
 
-def _questions(G: Any, model: str | None, tau: int | None, limits: Limits) -> tuple[Decisions, tuple[str, ...]]:
+def _questions(
+    G: Any, model: str | None, ages: tuple[int | None, int | None, int | None], limits: Limits
+) -> tuple[Decisions, tuple[str, ...]]:
     """Return what decides about G, and the threat models to decide about."""
     if not isinstance(G, TimeVaryingGraph):
-        if tau is not None:
-            raise InvalidParameter("tau belongs to a time-varying network: leave it out, or pass a TimeVaryingGraph")
+        for name, value in zip(("tau", "delay", "gap"), ages, strict=True):
+            if value is not None:
+                raise InvalidParameter(
+                    f"{name} belongs to a time-varying network: leave it out, or pass a TimeVaryingGraph"
+                )
         names = tuple(THREAT_MODELS) if model is None else (threat_model_named(model).name,)
-        return Decisions(as_digraph(G), limits.deadline, limits.jobs, limits.seed, limits.progress), names
+        return Decisions(as_digraph(G), limits), names
+    tau, delay, gap = ages
     if type(tau) is not int or tau < 1:
         raise InvalidParameter(f"a time-varying network needs tau, an integer of at least 1, not {tau!r}")
+    delay, gap = tau if delay is None else delay, 1 if gap is None else gap
+    for name, value in (("delay", delay), ("gap", gap)):
+        if type(value) is not int or value < 1:
+            raise InvalidParameter(f"{name} is an integer of at least 1, not {value!r}")
     names = MODELS_OVER_TIME if model is None else (over_time(model).name,)
     union = G.union(0, len(G))
-    decisions = JointDecisions(
-        union, limits.deadline, limits.jobs, limits.seed, limits.progress, sequence=G, tau=tau
-    )
-    return decisions, names
+    return JointDecisions(union, limits, sequence=G, tau=tau, delay=delay, gap=gap), names

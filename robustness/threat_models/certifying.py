@@ -6,7 +6,7 @@ what                        the certificate proves                              
 guaranteed, malicious       (f+1,f+1)-robust                                                     ``verify``
 guaranteed, byzantine       no trap for f: (2f+1)-robust, or (f+1)-robust without any f nodes    ``verify_tolerance``
 guaranteed, all others      (2f+1)-robust                                                        ``verify``
-guaranteed, over time       jointly (2f+1)-robust over some l <= tau steps                       ``verify_joint``
+guaranteed, over time       jointly (2f+1)-robust over few enough steps                          ``verify_joint``
 refuted, malicious          not (f+1,f+1)-robust                                                 ``verify``
 refuted, all others         the sets M, S1, S2 of the attack                                     ``verify_tolerance``
 ==========================  ===================================================================  =====================
@@ -109,7 +109,8 @@ class _Work:
             return None
         r = 2 * result.guaranteed + 1
         found, certificate = certify_joint(result.sequence, r, time_limit=left, jobs=self.jobs, seed=self.seed)
-        if certificate is not None and (found.window is None or result.tau is None or found.window > result.tau):
+        most = result.longest_window
+        if certificate is not None and (found.window is None or most is None or found.window > most):
             raise InternalError(f"{result} was certified as {found.summary()}: please report")
         return certificate
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from robustness.decision.algorithms import Limits, Progress
-from robustness.decision.front import check_rs_robustness
+from robustness.decision.front import check_within
 from robustness.definitions import largest_conceivable_r, r_reachable_ids
 from robustness.digraph import Digraph
+from robustness.limits import Limits
 from robustness.results import RobustnessResult, Verdict
 from robustness.traps.finding import decide_trap
 from robustness.traps.question import Question, Sets, solves
@@ -37,31 +35,15 @@ class Decisions:
     """What has been decided about one graph. All methods are exact or say that a limit stopped them."""
 
     graph: Digraph
-    deadline: float | None
-    jobs: int = 1
-    seed: int = 0
-    progress: Callable[[Progress], None] | None = None
+    limits: Limits
     _robust: dict[tuple[int, int], RobustnessResult] = field(default_factory=dict)
     _attacks: dict[Question, Finding] = field(default_factory=dict)
-
-    def limits(self, share: float = 1.0) -> Limits:
-        """Return limits that allow ``share`` of the time that is left."""
-        deadline = self.deadline
-        if deadline is not None:
-            now = time.monotonic()
-            deadline = now + max(0.0, deadline - now) * share
-        return Limits(deadline, self.jobs, self.seed, self.progress)
 
     def robust(self, r: int, s: int = 1, share: float = 1.0) -> RobustnessResult:
         """Return the result of :func:`check_rs_robustness`, from memory where it is known."""
         known = self._robust.get((r, s))
         if known is None:
-            limits = self.limits(share)
-            # The front refuses a limit that is not positive; a hundredth of a second decides the easy ones.
-            left = None if limits.deadline is None else max(0.01, limits.seconds_left())
-            known = self._robust[r, s] = check_rs_robustness(
-                self.graph, r, s, time_limit=left, jobs=self.jobs, seed=self.seed, progress=self.progress
-            )
+            known = self._robust[r, s] = check_within(self.graph, r, s, self.limits.share(share))
         return known
 
     def attack(self, question: Question, share: float = 1.0) -> Finding:
@@ -75,7 +57,7 @@ class Decisions:
         """Return what lemmas alone tell about the question, or None."""
         known = self._attacks.get(question) or self._implied(question)
         if known is None:
-            settled = settle_trap(self.graph, question, self.limits(0.1))
+            settled = settle_trap(self.graph, question, self.limits.share(0.1))
             if settled is not None:
                 known = Finding(settled[0] is not None, settled[0], settled[1])
         if known is not None and known.exists is not None:
@@ -118,7 +100,7 @@ class Decisions:
         if f == 0 or not (two_faces or local):
             # For f = 0 all kinds are one: nodes of S_k hear neither a malicious node nor anybody else outside S_k.
             return self._violation(f, share)
-        limits = self.limits(share)
+        limits = self.limits.share(share)
         exists, sets, name, stats = decide_trap(self.graph, question, limits)
         how = str(stats.get("rule", "")) or f"complete search ({stats.get('nodes', 0)} nodes)"
         if exists is None:

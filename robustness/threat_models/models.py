@@ -71,8 +71,12 @@ class ThreatModel:
         return Question(f, self.two_faces, self.local)
 
 
-#: Where the theorems on second-order vehicles hold; the source paper leaves it unsaid, its source asks for it.
-SECOND_ORDER_GAINS = "for weights that add up to at most 1 and gains with 1 + T²/2 <= alpha T <= 2 - T²/2"
+#: Where the theorems on second-order vehicles hold; the source paper leaves it unsaid. See robustness.gain_region: at
+#: s = 1, which the interval of the literature includes, vehicles can swap places for ever.
+SECOND_ORDER_GAINS = (
+    "for gains in the gain region: weights that add up to at most sigma, s = sigma T² < 1, "
+    "2 sqrt(s) - s/2 <= alpha T <= 2 - s/2"
+)
 
 _SYNCHRONOUS_TRAP = (
     "Vaidya, Tseng and Liang 2012: each malicious node tells one group one value and the other group another"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import enum
-import html
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from certificates.graph import Label
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
+from robustness.showing import Shown
 from robustness.threat_models.models import ThreatModel
 
 if TYPE_CHECKING:
@@ -77,8 +77,8 @@ class Reason:
     evidence: str
 
 
-@dataclass(frozen=True, slots=True)
-class ToleranceResult:
+@dataclass(frozen=True, slots=True, repr=False)
+class ToleranceResult(Shown):
     """What one network survives under one threat model.
 
     Attributes
@@ -98,7 +98,9 @@ class ToleranceResult:
     sequence : TimeVaryingGraph or None
         The sequence whose windows the promise is about; ``graph`` is then the union of its steps.
     tau : int or None
-        With a sequence: the bound on delays and on the length of the windows.
+        With a sequence: for how many steps after it was sent a value is used.
+    longest_window : int or None
+        With a sequence: how many steps the windows of a promise may have.
     """
 
     graph: Digraph = field(repr=False)
@@ -111,6 +113,7 @@ class ToleranceResult:
     no_promise: int | None = None
     sequence: TimeVaryingGraph | None = field(default=None, repr=False, compare=False)
     tau: int | None = None
+    longest_window: int | None = None
 
     def __bool__(self) -> bool:
         raise TypeError("a ToleranceResult has no truth value: compare .guaranteed, .refuted or .standing(f)")
@@ -195,18 +198,16 @@ class ToleranceResult:
             "attack": None if self.attack is None else self.attack.as_dict(),
         }
 
-    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
-        """Render in notebooks: the summary and the reasons."""
-        rows = "".join(
-            f"<tr><th>{reason.standing.value} f = {reason.f}</th><td>{html.escape(reason.statement)}</td>"
-            f"<td>{html.escape(reason.theorem)}</td></tr>"
+    def evidence(self) -> list[tuple[str, str]]:
+        """Return the reasons, as rows of a name and a text."""
+        return [
+            (f"{reason.standing.value} f = {reason.f}", f"{reason.statement} ({reason.theorem})")
             for reason in self.reasons
-        )
-        return {"text/plain": repr(self), "text/html": f"<p>{html.escape(self.summary())}</p><table>{rows}</table>"}
+        ]
 
 
-@dataclass(frozen=True, slots=True)
-class ToleranceTable(Mapping[str, ToleranceResult]):
+@dataclass(frozen=True, slots=True, repr=False)
+class ToleranceTable(Shown, Mapping[str, ToleranceResult]):
     """The results of several threat models by name."""
 
     graph: Digraph
@@ -250,14 +251,15 @@ class ToleranceTable(Mapping[str, ToleranceResult]):
 
         return table_summary(self)
 
-    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
-        """Render in notebooks: the paragraph and the table."""
+    def evidence(self) -> list[tuple[str, str]]:
+        """Return the table, as rows of a model and what is known."""
         from robustness.threat_models.wording import number
 
-        rows = "".join(
-            f"<tr><th>{result.model}</th><td>{number(result.guaranteed)}</td><td>{number(result.refuted)}</td></tr>"
+        return [
+            (result.model, f"guaranteed f = {number(result.guaranteed)}, refuted f = {number(result.refuted)}")
             for result in self.results
-        )
-        head = "<tr><th>model</th><th>guaranteed f</th><th>refuted f</th></tr>"
-        text = f"<p>{html.escape(self.summary())}</p><table>{head}{rows}</table>"
-        return {"text/plain": repr(self), "text/html": text}
+        ]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the table as JSON-ready values, by model."""
+        return {result.model: result.as_dict() for result in self.results}

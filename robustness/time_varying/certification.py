@@ -15,10 +15,10 @@ import numpy as np
 from certificates import verify_joint
 from certificates.graph import digest
 from certificates.joint import FORMAT, MAX_VALUE, encode_sequence
-from robustness.decision.algorithms import Progress
 from robustness.decision.certification import certify, encode
 from robustness.digraph import GraphLike
 from robustness.errors import InternalError, InvalidParameter
+from robustness.limits import Progress
 from robustness.results import Verdict
 from robustness.time_varying.checking import check_joint_robustness
 from robustness.time_varying.results import JointResult

@@ -17,17 +17,17 @@ is robust, go to the next start with the same l. No start is ever looked at agai
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-from robustness.decision.algorithms import Progress
+from robustness.decision.algorithms import require_algorithm
 from robustness.definitions import is_violation, largest_conceivable_r, require_r_and_s
 from robustness.digraph import GraphLike
 from robustness.errors import InternalError, InvalidParameter
+from robustness.limits import Limits, Progress
 from robustness.results import Verdict
 from robustness.time_varying.deciding import RULES, TIME_IS_UP, UnionDecider
 from robustness.time_varying.results import JointResult, Unions, UnionVerdict, Violation
@@ -78,7 +78,7 @@ def check_joint_robustness(
         Which of the shortcuts ``"equal"``, ``"pair"``, ``"subgraph"``, ``"growth"``, ``"ahead"`` to use: all, unless
         one wants to measure what they save. The verdict does not depend on it.
     progress : callable, optional
-        Called now and then with a :class:`~robustness.decision.algorithms.Progress`.
+        Called now and then with a :class:`~robustness.limits.Progress`.
 
     Returns
     -------
@@ -110,10 +110,31 @@ def check_joint_robustness(
     started = time.monotonic()
     sequence = as_time_varying(sequence)
     require_r_and_s(sequence.graph_at(0), r, s)
-    _require_window(window, tau, time_limit, reuse)
-    deadline = None if time_limit is None else started + time_limit
-    decider = UnionDecider(sequence, r, s, algorithm, deadline, frozenset(reuse), jobs, seed)
-    survey = _Survey(sequence, decider, progress)
+    require_algorithm(algorithm)
+    _require_window(window, tau, reuse)
+    limits = Limits.of(time_limit, jobs, seed, progress)
+    found = _check(sequence, r, s, limits, window, tau, all_windows, algorithm, frozenset(reuse))
+    return replace(found, seconds=time.monotonic() - started)
+
+
+def check_joint_within(sequence: TimeVaryingGraph, r: int, s: int, *, tau: int, limits: Limits) -> JointResult:
+    """Do what :func:`check_joint_robustness` does for a question that is known to be valid, within ``limits``."""
+    return _check(sequence, r, s, limits, None, tau, False, "auto", RULES)
+
+
+def _check(
+    sequence: TimeVaryingGraph,
+    r: int,
+    s: int,
+    limits: Limits,
+    window: int | None,
+    tau: int | None,
+    all_windows: bool,
+    algorithm: str,
+    reuse: frozenset[str],
+) -> JointResult:
+    decider = UnionDecider(sequence, r, s, algorithm, limits, reuse)
+    survey = _Survey(sequence, decider, limits.progress)
     result = survey.smallest() if window is None else survey.given(window, all_windows)
     return replace(
         result,
@@ -123,7 +144,6 @@ def check_joint_robustness(
         stats=MappingProxyType(
             {"windows": decider.settled.total(), "searches": decider.searches, **dict(sorted(decider.settled.items()))}
         ),
-        seconds=time.monotonic() - started,
     )
 
 
@@ -146,16 +166,15 @@ def joint_curve(
     >>> dict(joint_curve(links))
     {1: 2, 2: 3}
     """
-    started = time.monotonic()
     sequence = as_time_varying(sequence)
     require_r_and_s(sequence.graph_at(0), 0, s)
-    _require_window(None, None, time_limit, RULES)
-    deadline = None if time_limit is None else started + time_limit
+    require_algorithm(algorithm)
+    limits = Limits.of(time_limit, jobs, seed, progress)
     curve: dict[int, int | None] = {}
     smallest: int | None = 1
     for r in range(1, largest_conceivable_r(sequence.n) + 1):
         if smallest is not None:
-            decider = UnionDecider(sequence, r, s, algorithm, deadline, jobs=jobs, seed=seed)
+            decider = UnionDecider(sequence, r, s, algorithm, limits)
             result = _Survey(sequence, decider, progress).smallest(smallest, map_windows=False)
             smallest = result.window if result.decided() else None
         curve[r] = smallest
@@ -302,12 +321,10 @@ def _within(result: JointResult, tau: int | None) -> bool | None:
     return result.window is not None and result.window <= tau
 
 
-def _require_window(window: int | None, tau: int | None, time_limit: float | None, reuse: Collection[str]) -> None:
+def _require_window(window: int | None, tau: int | None, reuse: Collection[str]) -> None:
     if window is not None and (type(window) is not int or window < 1):
         raise InvalidParameter(f"a window has an integer number of steps of at least 1, not {window!r}")
     if tau is not None and (type(tau) is not int or tau < 0):
         raise InvalidParameter(f"tau is an integer of at least 0, not {tau!r}")
-    if time_limit is not None and not (math.isfinite(time_limit) and time_limit > 0):
-        raise InvalidParameter(f"time_limit is a positive, finite number of seconds, not {time_limit!r}")
     if not RULES.issuperset(reuse):
         raise InvalidParameter(f"reuse holds some of {', '.join(sorted(RULES))}, not {sorted(set(reuse) - RULES)}")

@@ -16,18 +16,18 @@ In this order, all exact:
 from __future__ import annotations
 
 import hashlib
-import time
 from collections import Counter
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from robustness.decision.bounds.growth import Growth
-from robustness.decision.front import check_rs_robustness
+from robustness.decision.front import check_within
 from robustness.decision.ladder import TRANSFORM_NODES
 from robustness.digraph import Digraph
+from robustness.limits import Limits
 from robustness.results import RobustnessResult, Verdict, Witness
 from robustness.time_varying.growth import Arcs, Seed, find_seed, grow
 from robustness.time_varying.results import UnionVerdict
@@ -49,12 +49,13 @@ _KEPT = 8
 #: How many searches seeds may cost before the first has to have paid, and out of how many exact searches they get one.
 _SEED_CREDIT, _SEED_SHARE = 64, 4
 
-#: The seconds that one search may take whose only use is to save others; how far ahead to look first and at most.
-_EXTRA_SECONDS = 1.0
+#: What one search may spend whose only use is to save others (about a second); how far ahead to look first and at most.
+_EXTRA_STEPS = 1_000_000_000
 _AHEAD_FIRST, _AHEAD_MOST = 4, 1024
 
-#: The bare search is tried for so many seconds, on graphs of up to so many nodes, before the front takes all its means.
-_QUICK_SECONDS, _QUICK_NODES = 0.1, 512
+#: The bare search is tried for so many steps (about a tenth of a second), on graphs of up to so many nodes, before the
+#: front takes all its means.
+_QUICK_STEPS, _QUICK_NODES = 100_000_000, 512
 
 
 class UnionDecider:
@@ -68,12 +69,10 @@ class UnionDecider:
         As for :func:`~robustness.decision.front.check_rs_robustness`.
     algorithm : str
         For the exact search.
-    deadline : float or None
-        A value of ``time.monotonic()``; past it a union that needs a search is UNDECIDED.
+    limits : Limits
+        Of everything; past the deadline a union that needs a search is UNDECIDED.
     reuse : set of str
         Which of :data:`RULES` are on.
-    jobs, seed : int
-        Of the exact search.
     """
 
     def __init__(
@@ -82,14 +81,11 @@ class UnionDecider:
         r: int,
         s: int,
         algorithm: str = "auto",
-        deadline: float | None = None,
+        limits: Limits | None = None,
         reuse: frozenset[str] = RULES,
-        jobs: int = 1,
-        seed: int = 0,
     ) -> None:
         self.sequence, self.r, self.s = sequence, r, s
-        self._algorithm, self._deadline, self._reuse = algorithm, deadline, reuse
-        self._effort: dict[str, Any] = {"jobs": jobs, "seed": seed}
+        self._algorithm, self._limits, self._reuse = algorithm, limits or Limits(), reuse
         heads, tails = np.divmod(sequence.arc_codes, max(sequence.n, 1))
         self._arcs = Arcs(sequence.n, heads, tails)
         self._verdicts: dict[bytes, UnionVerdict] = {}
@@ -176,13 +172,12 @@ class UnionDecider:
 
     def _search(self, window: SlidingUnion, present: _Marks) -> UnionVerdict:
         """Decide the union through the front, and keep what was found for the next ones."""
-        seconds = self._seconds_left()
-        if seconds is not None and seconds <= 0:
+        if self._limits.expired():
             return UnionVerdict(Verdict.UNDECIDED, "exact", reason=TIME_IS_UP)
         self.searches += 1
         self._exact_searches += 1
         graph = self.sequence.digraph(present)
-        result = self._ask(graph, seconds)
+        result = self._ask(graph, self._limits)
         if result.witness is not None and "pair" in self._reuse:
             _keep(self._pairs, _Pair(graph, self._arcs, result.witness))
         growth = self._learn(window, present) if result.verdict is Verdict.ROBUST else None
@@ -209,36 +204,26 @@ class UnionDecider:
 
     def _extra_search(self, graph: Digraph) -> Verdict:
         """Return the verdict on a graph that is no union itself; it may take a moment only."""
-        left = self._seconds_left()
-        seconds = _EXTRA_SECONDS if left is None else min(_EXTRA_SECONDS, left)
-        if seconds <= 0:
+        if self._limits.expired():
             return Verdict.UNDECIDED
         self.searches += 1
-        return self._ask(graph, seconds).verdict
+        return self._ask(graph, self._limits.counted(_EXTRA_STEPS)).verdict
 
-    def _ask(self, graph: Digraph, seconds: float | None) -> RobustnessResult:
+    def _ask(self, graph: Digraph, limits: Limits) -> RobustnessResult:
         """Decide through the front; ``auto`` tries the bare search first.
 
         The front's cheap bounds look for what the earlier unions have taught already, and on graphs of middling size
         they take far longer than most searches.
         """
         if self._algorithm == "auto" and TRANSFORM_NODES < graph.n <= _QUICK_NODES:
-            moment = _QUICK_SECONDS if seconds is None else min(_QUICK_SECONDS, seconds)
-            quick = check_rs_robustness(
-                graph, self.r, self.s, algorithm="subset-search", time_limit=moment, **self._effort
-            )
-            seconds = None if seconds is None else seconds - quick.seconds
-            if quick.verdict is not Verdict.UNDECIDED or (seconds is not None and seconds <= 0):
+            quick = check_within(graph, self.r, self.s, limits.counted(_QUICK_STEPS), "subset-search")
+            if quick.verdict is not Verdict.UNDECIDED or limits.expired():
                 return quick
-        return check_rs_robustness(graph, self.r, self.s, algorithm=self._algorithm, time_limit=seconds, **self._effort)
+        return check_within(graph, self.r, self.s, limits, self._algorithm)
 
     def expired(self) -> bool:
         """Return whether the deadline has passed."""
-        left = self._seconds_left()
-        return left is not None and left <= 0
-
-    def _seconds_left(self) -> float | None:
-        return None if self._deadline is None else self._deadline - time.monotonic()
+        return self._limits.expired()
 
 
 class _Luck:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -11,7 +10,9 @@ from typing import Any, overload
 from robustness.decision.bounds.growth import Growth
 from robustness.digraph import Digraph
 from robustness.errors import Undecided
+from robustness.natural_order import in_natural_order
 from robustness.results import Verdict, Witness
+from robustness.showing import Shown, labels_in_words
 from robustness.time_varying.sequence import TimeVaryingGraph
 
 __all__ = ["JointResult", "UnionVerdict", "Unions", "Violation"]
@@ -72,6 +73,11 @@ class Unions(Sequence[Digraph]):
     def __init__(self, sequence: TimeVaryingGraph, starts: Sequence[int], length: int) -> None:
         self._sequence, self._starts, self._length = sequence, tuple(starts), length
 
+    @property
+    def sequence(self) -> TimeVaryingGraph:
+        """The sequence whose windows these are."""
+        return self._sequence
+
     def __len__(self) -> int:
         return len(self._starts)
 
@@ -87,8 +93,8 @@ class Unions(Sequence[Digraph]):
         return self._sequence.union(self._starts[index], self._length)
 
 
-@dataclass(frozen=True, slots=True)
-class JointResult:
+@dataclass(frozen=True, slots=True, repr=False)
+class JointResult(Shown):
     """The answer to :func:`~robustness.time_varying.check_joint_robustness`.
 
     Attributes
@@ -175,9 +181,18 @@ class JointResult:
         kind = "every" if self.asked_window else "smallest window: every"
         return f"jointly {what}; {kind} {self.window} consecutive steps"
 
-    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
-        """Render in notebooks: a small table of what is known."""
-        rows = [("verdict", self.summary()), ("seconds", f"{self.seconds:.3f}")]
+    def pictured(self) -> Digraph | None:
+        """Return the union of the window that fails, or else of the first one that was decided."""
+        if not isinstance(self.unions, Unions):
+            return self.unions[0] if self.unions else None
+        found = self.violation or self.shorter_fails
+        if found is not None:
+            return self.unions.sequence.union(found.start, found.length)
+        return self.unions[0] if len(self.unions) else None
+
+    def evidence(self) -> list[tuple[str, str]]:
+        """Return what is known, as rows of a name and a text."""
+        rows = [("seconds", f"{self.seconds:.3f}")]
         if self.reason:
             rows.append(("reason", self.reason))
         if self.within_tau is not None:
@@ -185,9 +200,32 @@ class JointResult:
         for name, found in (("violating window", self.violation), ("one step shorter fails", self.shorter_fails)):
             if found is not None:
                 rows.append((name, f"{found.length} steps from step {found.start}"))
-                rows += [(part, ", ".join(sorted(map(repr, side)))) for part, side in _sides(found.witness)]
-        body = "".join(f"<tr><th>{html.escape(k)}</th><td>{html.escape(v)}</td></tr>" for k, v in rows)
-        return {"text/plain": repr(self), "text/html": f"<table>{body}</table>"}
+                rows += [(part, labels_in_words(side)) for part, side in _sides(found.witness)]
+        return rows
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the answer as JSON-ready values."""
+        return {
+            "verdict": self.verdict.value,
+            "r": self.r,
+            "s": self.s,
+            "asked_window": self.asked_window,
+            "window": self.window,
+            "at_least": self.at_least,
+            "tau": self.tau,
+            "within_tau": self.within_tau,
+            "violation": _as_dict(self.violation),
+            "shorter_fails": _as_dict(self.shorter_fails),
+            "reason": self.reason,
+            "seconds": self.seconds,
+        }
+
+
+def _as_dict(found: Violation | None) -> dict[str, Any] | None:
+    if found is None:
+        return None
+    sides = {name: in_natural_order(side) for name, side in _sides(found.witness)}
+    return {"start": found.start, "length": found.length, "witness": sides or None}
 
 
 def _sides(witness: Witness | None) -> list[tuple[str, frozenset[Any]]]:

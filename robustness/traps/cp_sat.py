@@ -21,8 +21,8 @@ import threading
 from collections.abc import Mapping
 from typing import Any
 
-from robustness.decision.algorithms import Limits
 from robustness.digraph import Digraph
+from robustness.limits import Limits
 from robustness.traps.question import Question, Sets
 
 __all__ = ["decide"]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import product
 
-from robustness.decision.algorithms import Limits
 from robustness.digraph import Digraph
+from robustness.limits import Limits
 from robustness.traps.question import Question, Sets, solves
 
 __all__ = ["decide"]

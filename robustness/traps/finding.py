@@ -9,10 +9,11 @@ from types import MappingProxyType
 from typing import Any
 
 from certificates.graph import Label
-from robustness.decision.algorithms import Limits, Progress
-from robustness.decision.front import limits_of
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InternalError, InvalidParameter, Undecided
+from robustness.limits import Limits, Progress
+from robustness.natural_order import in_natural_order
+from robustness.showing import Shown, labels_in_words
 from robustness.traps.question import Question, Sets, solves
 from robustness.traps.shortcuts import settle_trap
 
@@ -25,8 +26,8 @@ TRAP_ALGORITHMS = ("search", "cp-sat", "exhaustive")
 _FACES = (1, 2)
 
 
-@dataclass(frozen=True, slots=True)
-class TrapResult:
+@dataclass(frozen=True, slots=True, repr=False)
+class TrapResult(Shown):
     """Whether the sets exist, and the sets.
 
     Attributes
@@ -57,6 +58,35 @@ class TrapResult:
 
     def __bool__(self) -> bool:
         raise TypeError("a TrapResult has three values, so it has no truth value: compare .exists, or call decided()")
+
+    def summary(self) -> str:
+        """Return the answer in one line."""
+        kind = "trap" if self.faces == 2 else "violation"
+        bound = f"{'local ' if self.local else ''}{kind} for f = {self.f}"
+        if self.exists is None:
+            return f"undecided: whether there is a {bound}"
+        if not self.exists:
+            return f"no {bound}"
+        sets = (("M", self.M), ("S1", self.S1), ("S2", self.S2))
+        return f"{bound}: " + ", ".join(f"{name} = {labels_in_words(labels)}" for name, labels in sets)
+
+    def evidence(self) -> list[tuple[str, str]]:
+        """Return what the answer rests on, as rows of a name and a text."""
+        sets = (("M", self.M), ("S1", self.S1), ("S2", self.S2)) if self.exists else ()
+        return [*((name, labels_in_words(labels)) for name, labels in sets), ("algorithm", self.algorithm)]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the answer as JSON-ready values."""
+        sets = {"M": self.M, "S1": self.S1, "S2": self.S2}
+        return {
+            "exists": self.exists,
+            "f": self.f,
+            "faces": self.faces,
+            "local": self.local,
+            "sets": {name: in_natural_order(labels) for name, labels in sets.items()} if self.exists else None,
+            "algorithm": self.algorithm,
+            "seconds": self.seconds,
+        }
 
     def decided(self) -> bool:
         """Return whether the sets exist; raise :class:`Undecided` when a limit stopped the search."""
@@ -134,7 +164,7 @@ def find_trap(
     if algorithm != "auto" and algorithm not in TRAP_ALGORITHMS:
         raise InvalidParameter(f"algorithm is 'auto' or one of {', '.join(TRAP_ALGORITHMS)}, not {algorithm!r}")
     question = Question(f, faces == 2, bool(local))
-    limits = limits_of(started, time_limit, jobs, seed, progress)
+    limits = Limits.of(time_limit, jobs, seed, progress)
     exists, sets, name, stats = decide_trap(graph, question, limits, algorithm, options)
     M, S1, S2 = (graph.labels_of(ids) for ids in sets or (frozenset(), frozenset(), frozenset()))
     return TrapResult(

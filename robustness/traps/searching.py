@@ -9,24 +9,16 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from robustness.decision.algorithms import Limits, Progress
 from robustness.digraph import Digraph
 from robustness.errors import InternalError
-from robustness.traps.kernel import ROWS, P, Q
-from robustness.traps.loop import CLOSED, FOUND, GROW, NODES, PAUSED, PROBES, search
+from robustness.kernels.layout import CLOSED, FOUND, GROW, NODES, PAUSED, PROBES, TRAP_P, TRAP_Q, TRAP_ROWS
+from robustness.limits import Limits, Progress
 from robustness.traps.question import Question, Sets
 
 __all__ = ["decide"]
 
-#: A slice of a search aims at this many seconds between two looks at the clock.
-_SLICE = 0.02
-
-
 #: Levels that a stack has at first; it doubles when they do not suffice.
 _LEVELS = 64
-
-#: Strategies for M, see :mod:`robustness.traps.loop`.
-_LAZY, _EAGER = 0, 1
 
 
 def decide(
@@ -35,11 +27,12 @@ def decide(
     """Return whether a solution exists (None past the deadline), one, and counters.
 
     Exponential in the worst case. ``counting`` and ``look_ahead`` are switches for what they are named after; the
-    answer does not depend on them. Two searches that differ in when M is drawn take turns; the first to end decides.
+    answer does not depend on them. Two searches that differ in when M is drawn
+    (:mod:`robustness.kernels.trap_loop`) take turns; the first to end decides.
     """
     hears = graph.in_words
     need = np.maximum(graph.in_degrees - question.f, 0).astype(np.int64)
-    runs = [_Run(hears, need, question, counting, look_ahead, eager) for eager in (_LAZY, _EAGER)[: 1 + look_ahead]]
+    runs = [_Run(hears, need, question, counting, look_ahead, eager) for eager in (False, True)[: 1 + look_ahead]]
     told = time.monotonic()
     while True:
         for run in runs:
@@ -57,7 +50,7 @@ def decide(
 
 
 class _Run:
-    """One search under one strategy, advanced a slice at a time."""
+    """One search under one strategy, advanced a turn at a time."""
 
     def __init__(
         self,
@@ -66,59 +59,56 @@ class _Run:
         question: Question,
         counting: bool,
         look_ahead: bool,
-        eager: int,
+        eager: bool,
     ) -> None:
+        from robustness.kernels.trap_loop import TrapSearch
+        from robustness.kernels.trap_rules import TrapRules
+
         n, words = hears.shape
         self._question = question
-        self._fixed = (
-            hears, need, min(question.f, n), int(question.two_faces), int(question.local), int(counting),
-            int(look_ahead), eager,
-        )  # fmt: skip
-        self._stack = np.zeros((_LEVELS, ROWS, words), np.uint64)
-        self._stack[0] = _whole_state(n, words)
-        self._symmetric = np.zeros(_LEVELS, np.int64)
-        self._symmetric[0] = 1
-        self._counters = np.zeros(3, np.int64)
-        self._found = np.zeros((4, words), np.uint64)
-        self._level, self._quota = 0, 8
+        rules = TrapRules(hears, need, min(question.f, n), question.two_faces, question.local, counting)
+        self._search = TrapSearch(rules, look_ahead, eager)
+        self._search.stack = np.zeros((_LEVELS, TRAP_ROWS, words), np.uint64)
+        self._search.symmetric = np.zeros(_LEVELS, np.int64)
+        np.asarray(self._search.stack)[0] = _whole_state(n, words)
+        np.asarray(self._search.symmetric)[0] = 1
+        # Counted, not timed: the two strategies take turns of equal length on every machine, so that the same one ends
+        # first. About a fiftieth of a second.
+        self._quota = max(1, 20_000_000 // (20_000 + 4 * n * n * words))
         self.is_closed = False
         self.solution: Sets | None = None
 
     @property
     def nodes(self) -> int:
         """States that were propagated."""
-        return int(self._counters[NODES])
+        return int(self._search.counters[NODES])
 
     @property
     def probes(self) -> int:
         """Literals that the look-ahead tried."""
-        return int(self._counters[PROBES])
+        return int(self._search.counters[PROBES])
 
     def advance(self) -> None:
-        """Search for a slice of time; ``is_closed`` or ``solution`` tells when it is over."""
-        begun = time.monotonic()
-        why, self._level = search(
-            self._stack, self._symmetric, self._level, *self._fixed, self._quota, self._counters, self._found
-        )
+        """Search for one turn; ``is_closed`` or ``solution`` tells when it is over."""
+        search = self._search
+        why = search.run(self._quota)
         if why == CLOSED:
             self.is_closed = True
         elif why == FOUND:
-            self.solution = _sets(self._found, self._question.two_faces)
+            self.solution = _sets(np.asarray(search.found), self._question.two_faces)
         elif why == GROW:
-            self._stack = np.concatenate([self._stack, np.zeros_like(self._stack)])
-            self._symmetric = np.concatenate([self._symmetric, np.zeros_like(self._symmetric)])
-        elif why == PAUSED:
-            took = time.monotonic() - begun
-            self._quota = int(min(max(self._quota * min(4.0, _SLICE / max(took, 1e-6)), 1), 1 << 30))
-        else:
+            stack, symmetric = np.asarray(search.stack), np.asarray(search.symmetric)
+            search.stack = np.concatenate([stack, np.zeros_like(stack)])
+            search.symmetric = np.concatenate([symmetric, np.zeros_like(symmetric)])
+        elif why != PAUSED:
             raise InternalError(f"the trap search stopped with status {why}: please report")
 
 
 def _whole_state(n: int, words: int) -> npt.NDArray[np.uint64]:
     """Return the state in which every node may have every role."""
-    state = np.zeros((ROWS, words), np.uint64)
+    state = np.zeros((TRAP_ROWS, words), np.uint64)
     for node in range(n):
-        state[[P, P + 1, Q, Q + 1], node // 64] |= np.uint64(1) << np.uint64(node % 64)
+        state[[TRAP_P, TRAP_P + 1, TRAP_Q, TRAP_Q + 1], node // 64] |= np.uint64(1) << np.uint64(node % 64)
     return state
 
 

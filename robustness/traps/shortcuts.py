@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from robustness.decision.algorithms import Limits
 from robustness.definitions import largest_conceivable_r, r_reachable_ids
 from robustness.digraph import Digraph
+from robustness.limits import Limits, Steps
 from robustness.results import Verdict
 from robustness.traps.question import Question, Sets
 
@@ -13,7 +13,7 @@ __all__ = ["Settled", "settle_trap"]
 #: A solution or None for "there is none", and the lemma.
 Settled = tuple[Sets | None, str]
 
-_HEURISTIC_SECONDS = 0.25
+_HEURISTIC_STEPS = 250_000_000
 
 
 def settle_trap(graph: Digraph, question: Question, limits: Limits) -> Settled | None:
@@ -83,8 +83,7 @@ def _by_robustness(graph: Digraph, question: Question, limits: Limits) -> Settle
     for r, s in ((2 * f + 1, 1), (f + 1, 1), (f + 1, f + 1)):
         if r > highest or limits.expired():
             continue
-        seconds = min(_HEURISTIC_SECONDS, limits.seconds_left())
-        settled = settle(graph, r, s, seed=limits.seed, time_budget=seconds, stop=limits.expired)
+        settled = settle(graph, r, s, seed=limits.seed, steps=Steps(_HEURISTIC_STEPS, limits.expired))
         if settled is None:
             continue
         if settled.verdict is Verdict.ROBUST and r == 2 * f + 1:

@@ -16,7 +16,7 @@ from certificates.graph import decode_graph
 from certificates.rules import Contradiction, Question, State, excludes, settle
 from robustness import Digraph
 from robustness.decision.algorithms import subset_search
-from robustness.decision.front import limits_of
+from robustness.limits import Limits
 from tests.oracles import brute_profile
 
 PROPAGATE, ROOT, SATISFIED, MEMBER, EXCLUDE_ONE, EXCLUDE_TWO = 0, 1, 2, 4, 6, 8
@@ -65,7 +65,7 @@ def claims(graph: Digraph, *, true: bool) -> Iterator[tuple[int, int]]:
 @cache
 def searched(graph: Digraph, r: int, s: int) -> bytes:
     """Return the transcript of the search for a true claim."""
-    answer = subset_search.decide(graph, r, s, limits_of(0.0, None, 1, 0, None), transcript=True)
+    answer = subset_search.decide(graph, r, s, Limits(), transcript=True)
     assert answer.transcript is not None
     return answer.transcript
 

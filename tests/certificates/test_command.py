@@ -12,12 +12,14 @@ from pathlib import Path
 import networkx as nx
 import pytest
 
+from certificates import Question, VerifiedJointClaim, VerifiedToleranceClaim, comparison
 from certificates import __main__ as program
 from robustness import Digraph
 from tests.certificates.forging import certificate, searched
 
 ROOT = Path(__file__).resolve().parents[2]
 WHEEL = Digraph.from_networkx(nx.wheel_graph(5))
+ABOUT_LIARS = ["--expect", "apart", "-f", "1", "--faces", "2", "--bound", "total"]
 PAIR = {"kind": "violation", "S1": [1, 2], "S2": [3, 4]}
 
 
@@ -36,6 +38,7 @@ def files(tmp_path: Path) -> Path:
         "cut": proof[:-1],
         "headless": proof[:40],
         "empty": b"",
+        "nameless": b"[]\n",
     }.items():
         (tmp_path / name).write_bytes(data)
     return tmp_path
@@ -48,9 +51,19 @@ def files(tmp_path: Path) -> Path:
         (("graph.json", "robust"), 0, "is (2,1)-robust", ""),
         (("graph", "split"), 0, "is not (3,1)-robust (evidence: violation)", ""),
         (("graph", "robust", "--expect", "robust", "-r", "2", "-s", "1"), 0, "verified", ""),
-        (("graph", "robust", "--expect", "not-robust"), 10, "verified", "not the one asked for (verdict not-robust)"),
-        (("graph", "robust", "-r", "3", "-s", "2"), 10, "verified", "not the one asked for (r 3, s 2)"),
-        (("graph", "robust", "-r", "0"), 10, "verified", "(r 0)"),
+        (("graph", "robust"), 0, "compared with no question", ""),
+        (("graph", "robust", "--expect", "robust", "-r", "1"), 0, "implies the one asked for (r 1)", ""),
+        (("graph", "robust", "--expect", "robust", "-r", "1", "-s", "2"), 0, "implies", ""),
+        (("graph", "robust", "--expect", "robust", "-r", "1", "-s", "3"), 10, "", "(r 1, s 3)"),
+        (("graph", "robust", "--expect", "robust", "-r", "-1"), 10, "", "(r -1)"),
+        (("graph", "split", "--expect", "not-robust", "-r", "4"), 0, "implies", ""),
+        (("graph", "split", "--expect", "not-robust", "-r", "2", "-s", "2"), 10, "", "(r 2, s 2)"),
+        (("graph", "robust", "--expect", "not-robust"), 10, "", "not the one asked for (verdict not-robust)"),
+        (("graph", "robust", "-r", "3", "-s", "2"), 10, "", "not the one asked for (r 3, s 2)"),
+        (("graph", "robust", "-r", "0"), 10, "", "(r 0)"),
+        (("graph", "robust", "--window", "2"), 10, "", "says nothing about window"),
+        (("graph", "robust", *ABOUT_LIARS), 10, "", "says nothing about f"),
+        (("graph", "nameless"), 3, "", "the format of a certificate is one of"),
         (("graph", "false"), 10, "", "rejected: refutation, byte"),
         (("other", "robust"), 10, "", "rejected: the certificate is about another graph"),
         (("graph", "cut"), 10, "", "rejected: refutation"),
@@ -80,12 +93,34 @@ def test_exit_codes(
     assert said.err.count("\n") == bool(err)
 
 
-@pytest.mark.parametrize("arguments", [(), ("prove",), ("verify", "graph"), ("verify", "a", "b", "-r", "two")])
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        (),
+        ("prove",),
+        ("verify", "graph"),
+        ("verify", "a", "b", "-r", "two"),
+        ("verify", "a", "b", "-f", "1"),
+        ("verify-tolerance", "a", "b", "--expect", "together", "-f", "1"),
+        ("verify-tolerance", "a", "b", "--faces", "1"),
+    ],
+)
 def test_usage(arguments: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         program.main(list(arguments))
     assert ended.value.code == 2
     assert "usage:" in capsys.readouterr().err
+
+
+def test_questions_that_the_programs_do_not_ask() -> None:
+    """A window apart from the one proven, and a threat without its f: neither is answered by what is proven."""
+    joint = VerifiedJointClaim("robust", 2, 1, 3, "windows", "", 5, 3, 3, None, 1, 0)
+    assert comparison(joint, Question("robust", 1, 1))[0]
+    assert not comparison(joint, Question("robust", 1, 1, 2))[0]
+    apart = VerifiedToleranceClaim("apart", 1, 2, "total", "sets", "", 5, 8)
+    assert not comparison(apart, Question("apart", s=2))[0]
+    assert not comparison(apart, Question("together", faces=2, bound="total"))[0]
+    assert comparison(apart, Question("apart", faces=2, bound="total")) == (True, "the claim is the one asked for")
 
 
 def test_no_more_than_the_limits_is_read(

@@ -14,6 +14,7 @@ from certificates import (
     MalformedGraph,
     Misuse,
     RejectedCertificate,
+    envelope,
     graph,
     refutation,
     rules,
@@ -186,10 +187,10 @@ class TestHeader:
         with pytest.raises(MalformedCertificate, match="at most"):
             verify(CANONICAL, PROOF)
         monkeypatch.setattr(verification, "MAX_CERTIFICATE_BYTES", len(PROOF))
-        monkeypatch.setattr(verification, "_MAX_HEADER_BYTES", PROOF.index(b"\n"))
+        monkeypatch.setattr(envelope, "MAX_HEADER_BYTES", PROOF.index(b"\n"))
         with pytest.raises(MalformedCertificate, match="one line"):
             verify(CANONICAL, PROOF)
-        monkeypatch.setattr(verification, "_MAX_HEADER_BYTES", len(PROOF))
+        monkeypatch.setattr(envelope, "MAX_HEADER_BYTES", len(PROOF))
         monkeypatch.setattr(refutation, "MAX_NODES", 4)
         with pytest.raises(MalformedCertificate, match="at most 4 nodes"):
             verify(CANONICAL, PROOF)

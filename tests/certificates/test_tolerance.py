@@ -222,7 +222,15 @@ class TestMalformed:
 class TestCommand:
     @pytest.mark.parametrize(
         ("options", "code"),
-        [([], 0), (["--expect", "apart", "-f", "1"], 0), (["-f", "2"], 10), (["--expect", "together"], 10)],
+        [
+            ([], 0),
+            (["--expect", "apart", "-f", "1", "--faces", "2", "--bound", "total"], 0),
+            (["--expect", "apart", "-f", "2", "--faces", "2", "--bound", "total"], 0),
+            (["--expect", "apart", "-f", "0", "--faces", "2", "--bound", "total"], 10),
+            (["--expect", "apart", "-f", "1", "--faces", "1", "--bound", "total"], 10),
+            (["--expect", "apart", "-f", "1", "--faces", "2", "--bound", "local"], 10),
+            (["--expect", "together", "-f", "1", "--faces", "2", "--bound", "total"], 10),
+        ],
     )
     def test_exit_codes(
         self, tmp_path: Path, options: list[str], code: int, capsys: pytest.CaptureFixture[str]
@@ -230,4 +238,4 @@ class TestCommand:
         (tmp_path / "graph").write_bytes(WHEEL.canonical_bytes())
         (tmp_path / "cert").write_bytes(make(WHEEL, claim(), TRAP))
         assert main(["verify-tolerance", str(tmp_path / "graph"), str(tmp_path / "cert"), *options]) == code
-        assert "verified: the graph with 5 nodes" in capsys.readouterr().out
+        assert ("verified: the graph with 5 nodes" in capsys.readouterr().out) is (code == 0)

@@ -11,9 +11,10 @@ from click.testing import CliRunner, Result
 
 import robustness as rb
 from cli.main import robustness
-from robustness.decision.algorithms import Limits, exhaustive
+from robustness.decision.algorithms import exhaustive
 from robustness.definitions import is_violation
 from robustness.files import encode_topology, read_topology, write_topology
+from robustness.limits import Limits
 
 DATA = Path(__file__).parents[1] / "data"
 WHEEL = encode_topology(nx.wheel_graph(5))
@@ -113,7 +114,7 @@ class TestJson:
 
     def test_no_profile_on_large_graphs_or_after_the_time_is_over(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr("cli.check.PROFILE_NODES", 4)
-        found = document()
+        found = document("--algorithm", "exhaustive")
         assert (found["verdict"], found["profile"]) == ("determined", None)
 
         def late(*_: object, **__: object) -> None:
@@ -121,7 +122,7 @@ class TestJson:
 
         monkeypatch.setattr("cli.check.PROFILE_NODES", 5)
         monkeypatch.setattr("robustness.decision.front.robustness_profile", late)
-        found = document("--timeout", "9")
+        found = document("--timeout", "9", "--algorithm", "subset-search")
         assert (found["verdict"], found["profile"]) == ("determined", None)
 
     def test_ctrl_c_in_the_profile_keeps_what_was_determined(self, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -129,7 +130,7 @@ class TestJson:
             raise KeyboardInterrupt
 
         monkeypatch.setattr("robustness.decision.front.robustness_profile", interrupt)
-        outcome = check("--json")
+        outcome = check("--json", "--algorithm", "exhaustive")
         found = json.loads(outcome.stdout)
         assert outcome.exit_code == 130
         assert (found["verdict"], found["r"], found["s"], found["profile"]) == ("determined", 2, 5, None)
@@ -202,7 +203,8 @@ class TestTalk:
         path = str(DATA / "square.graphml")
         outcome = CliRunner().invoke(robustness, ["check", path])
         assert outcome.exit_code == 0
-        assert outcome.stderr == "warning: GraphML reads every label as text; node-link JSON (.json) keeps everything\n"
+        said = "read as: undirected, 4 nodes, 4 links; GraphML reads every label as text"
+        assert outcome.stderr == f"warning: {said}; node-link JSON (.json) keeps everything\n"
         assert "warning" not in outcome.stdout
 
     @pytest.mark.parametrize("arguments", [["-q", "check"], ["check", "-q"]])

@@ -165,7 +165,7 @@ def test_an_internal_error_says_that_it_is_no_verdict(monkeypatch: pytest.Monkey
 def test_a_contradiction_between_profile_and_r_is_an_internal_error(monkeypatch: pytest.MonkeyPatch) -> None:
     for profile in ({1: 3, 2: 0}, {1: 4, 2: 1}):
         monkeypatch.setattr("robustness.decision.front.robustness_profile", lambda *_, table=profile, **__: table)
-        outcome = CliRunner().invoke(robustness, ["check", SQUARE])
+        outcome = CliRunner().invoke(robustness, ["check", SQUARE, "--algorithm", "exhaustive"])
         assert outcome.exit_code == 1
         assert "contradicts" in outcome.stderr
 

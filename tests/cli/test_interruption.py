@@ -80,7 +80,7 @@ def test_a_profile_that_overruns_is_left_out(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(interruption, "GRACE", 0.0)
     release = threading.Event()
     monkeypatch.setattr("robustness.decision.front.robustness_profile", lambda *_, **__: release.wait(60))
-    outcome = CliRunner().invoke(robustness, ["check", SQUARE, "--json", "--timeout", "2"])
+    outcome = CliRunner().invoke(robustness, ["check", SQUARE, "--json", "--timeout", "2", "--algorithm", "exhaustive"])
     release.set()
     assert outcome.exit_code == 0
     found = json.loads(outcome.stdout)

@@ -290,10 +290,17 @@ class TestAttack:
         done = run("attack", "-", "--model", model, "--timeout", "1e-9", graph=WHEEL)
         assert done.exit_code in (ExitCode.DONE, ExitCode.REFUTED, ExitCode.UNDECIDED), done.output
 
-    def test_where_the_theory_is_open(self) -> None:
-        done = run("attack", "-", "--model", "delayed", graph=encode_topology(nx.complete_graph(4)))
-        assert done.exit_code == ExitCode.UNDECIDED
-        assert "open" in done.stdout
+    def test_agreement_is_promised_only_for_gains_of_the_theory(self) -> None:
+        """K_4 with f = 1, which the source paper leaves open; exit 10 names the gains, and 30 when they are others."""
+        graph = encode_topology(nx.complete_graph(4))
+        for model in ATTACK_MODELS:
+            done = run("attack", "-", "--model", model, graph=graph)
+            assert done.exit_code == ExitCode.REFUTED
+            assert "alpha T <= 2 - s/2" in done.stdout
+            assert run("attack", "-", "--model", model, "--alpha", "1.5", graph=graph).exit_code == ExitCode.REFUTED
+            done = run("attack", "-", "--model", model, "--alpha", "0.3", "-T", "0.01", graph=graph)
+            assert done.exit_code == ExitCode.UNDECIDED
+            assert "nothing is promised" in done.stdout
 
     @pytest.mark.parametrize(("graph", "model"), [(CYCLE, "malicious"), (WHEEL, "delayed"), (WHEEL, "byzantine")])
     def test_the_file_is_played_by_simulate(self, tmp_path: Path, graph: bytes, model: str) -> None:

@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from robustness.decision.algorithms import Limits
 from robustness.decision.algorithms.exhaustive import decide
 from robustness.definitions import largest_conceivable_r
 from robustness.digraph import as_digraph
+from robustness.limits import Limits
 from robustness.results import Verdict
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import random
+
 import networkx as nx
 import pytest
 
@@ -73,6 +75,55 @@ def test_every_operation(seeds: list[nx.Graph], made: Guaranteed) -> None:
     if made.guarantee.r > 1:
         smaller = certify_derivation(made.guarantee, seeds, made.guarantee.r - 1)
         assert verify(canonical, smaller.certificate).r == made.guarantee.r - 1
+
+
+def test_a_pair_that_few_nodes_cut_is_cut_in_the_certificate_too() -> None:
+    """K_3 without a node is (1,2)-robust, as it has two nodes; Lemma 1 alone would go on with (1,3)."""
+    seed = nx.complete_graph(3)
+    made = add_node(remove_nodes(guaranteed(seed), [0]), 9, hears=[1, 2])
+    result = certify_derivation(made.guarantee, [seed])
+    assert (result.r, result.s) == (made.guarantee.r, made.guarantee.s) == (1, 2)
+
+
+def random_step(made: Guaranteed, draw: random.Random) -> Guaranteed:
+    """Return what some operation makes of the graph, whichever fits."""
+    graph = made.graph
+    nodes, fresh = list(graph), 100 + draw.randrange(10**6)
+    match draw.randrange(7):
+        case 0:
+            return remove_nodes(made, draw.sample(nodes, draw.randrange(1, max(2, len(nodes) - 1))))
+        case 1:
+            heard = draw.sample(nodes, draw.randrange(1, len(nodes) + 1))
+            return add_node(made, fresh, hears=heard)
+        case 2:
+            return join_clique(made, draw.randrange(1, 3))
+        case 3:
+            return blow_up(made, 2, cliques=draw.random() < 0.5) if len(nodes) < 10 else made
+        case 4:
+            arcs = list(graph.edges)
+            return remove_in_arcs(made, draw.sample(arcs, min(len(arcs), draw.randrange(1, 3))))
+        case 5:
+            return weaken(made, draw.randint(1, made.guarantee.r), 1)
+        case _:
+            return grow(made, len(nodes) + draw.randrange(3), seed=draw.randrange(100))
+
+
+@pytest.mark.parametrize("number", range(60))
+def test_every_chain_of_operations_that_guarantees_something_certifies(number: int) -> None:
+    draw = random.Random(number)
+    n = draw.randrange(2, 7)
+    seed = nx.gnp_random_graph(n, draw.choice((0.8, 1.0)), seed=number, directed=number % 3 == 0)
+    made = guaranteed(seed)
+    certified = 0
+    for _ in range(6):
+        if made.guarantee.r < 1 or len(made.graph) < 2:
+            break
+        result = certify_derivation(made.guarantee, [seed])
+        claim = verify(Digraph.from_networkx(made.graph).canonical_bytes(), result.certificate)
+        assert (claim.verdict, claim.r, claim.s) == ("robust", made.guarantee.r, made.guarantee.s)
+        certified += 1
+        made = random_step(made, draw)
+    assert certified or guaranteed(seed).guarantee.r < 1
 
 
 def test_only_the_seed_is_searched() -> None:

@@ -17,15 +17,14 @@ import robustness as rb
 from robustness.constructions.counterexamples import FIVE_NODE_READINGS, five_node_figure, two_f_robust_counterexample
 from robustness.constructions.small_graphs import each_graph
 from robustness.constructions.traps import is_trap
-from robustness.decision.algorithms import Limits
 from robustness.definitions import is_violation
 from robustness.digraph import Digraph, as_digraph
 from robustness.errors import InvalidParameter
+from robustness.limits import Limits
 from robustness.results import RobustnessResult, Verdict
 from robustness.simulation import (
     RULES,
     Attack,
-    PromiseWarning,
     attack_from_trap,
     attack_from_violation,
     find_attack,
@@ -154,9 +153,12 @@ class TestTheSplitDependsOnNothingElse:
             if attack.model == "malicious":
                 assert_splits(attack, 40, active=frozenset(attack.graph.labels))
 
-    def test_gains_outside_the_theory_are_warned_of(self) -> None:
-        with pytest.warns(PromiseWarning):
-            assert_splits(self.attacks()[0], 20, T=0.01, alpha=2.0)
+    def test_gains_outside_the_theory_are_said_and_not_warned_of(self) -> None:
+        """The split is proven for all gains; only agreement would need the theory."""
+        for attack in self.attacks():
+            outcome = attack.run(20, T=0.01, alpha=1.0)
+            assert outcome.exact
+            assert "nothing is promised" in str(outcome.promise)
 
 
 class TestPropositionOne:
@@ -298,8 +300,9 @@ class TestFinding:
             (nx.complete_graph(5), 1, "delayed", "agreement"),
             (nx.complete_graph(5), 1, "byzantine", "agreement"),
             (nx.complete_graph(4), 1, "byzantine", "agreement"),
-            (nx.complete_graph(4), 1, "delayed", "undecided"),
-            (nx.complete_graph(4), 1, "malicious-local", "undecided"),
+            (nx.complete_graph(4), 1, "delayed", "agreement"),
+            (nx.complete_graph(4), 1, "delayed-local", "agreement"),
+            (nx.complete_graph(4), 1, "malicious-local", "agreement"),
             (nx.complete_graph(5), 1, "malicious-local", "agreement"),
             (nx.cycle_graph(6), 1, "malicious-local", "split"),
             (nx.wheel_graph(5), 1, "delayed-local", "split"),
@@ -340,9 +343,9 @@ class TestFinding:
                         assert found.outcome == "split"
                         assert found.attack.model == THREAT_MODELS[model].faults
                         assert_splits(found.attack, 4)
-                    elif found.outcome == "undecided":
-                        assert "open" in found.reason
-                        assert not rb.is_r_robust(graph, 2 * f + 1)
+                    else:
+                        assert found.outcome == "agreement"
+                        assert "alpha T" in found.reason
 
     @pytest.mark.parametrize("model", ["delayed", "delayed-local", "malicious-local"])
     def test_the_time_limit_is_for_everything_together(self, model: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -381,7 +384,22 @@ class TestFinding:
         assert found.attack is not None
         assert_splits(found.attack, 20)
 
+    @pytest.mark.parametrize("model", ATTACK_MODELS)
+    def test_agreement_is_promised_for_the_gains_of_the_theory(self, model: str) -> None:
+        graph = nx.complete_graph(5)
+        assert "2 sqrt(s) - s/2 <= alpha T <= 2 - s/2" in find_attack(graph, 1, model).reason
+        for inside in ({"T": 1.0}, {"T": 0.01, "alpha": 2.0}, {"sigma": 0.9}, {"T": 0.01, "alpha": 10.0, "sigma": 3.0}):
+            assert find_attack(graph, 1, model, **inside).outcome == "agreement"
+        for outside in ({"alpha": 4.0}, {"T": 0.01, "alpha": 0.3}, {"sigma": 1.0}, {"T": 1.2}):
+            found = find_attack(graph, 1, model, **outside)
+            assert (found.outcome, found.attack) == ("undecided", None)
+            assert "nothing is promised" in found.reason
+        split = find_attack(nx.cycle_graph(6), 1, model, T=0.01, alpha=0.3)
+        assert split.attack is not None
+
     def test_bad_questions(self) -> None:
+        with pytest.raises(InvalidParameter, match="positive number"):
+            find_attack(nx.complete_graph(5), 1, "delayed", alpha=-1.0)
         with pytest.raises(InvalidParameter, match="model"):
             find_attack(nx.cycle_graph(4), 1, "evil")
         with pytest.raises(InvalidParameter, match="f is"):

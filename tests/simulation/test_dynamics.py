@@ -13,7 +13,7 @@ from robustness.errors import InvalidParameter
 from robustness.simulation import PromiseWarning, Scenario, Start, Topology, simulate
 from robustness.simulation.dynamics import double_integrator, to_absolute, to_transformed
 from robustness.simulation.formation import node_offsets, offsets_from_deltas
-from robustness.simulation.gains import arc_weights, gain_interval, kept_weight_bound, node_gains, promise_gap
+from robustness.simulation.gains import arc_weights, fleet_of, kept_weight_bound, node_gains
 from robustness.simulation.rules import DP_MSR, W_MSR
 
 SMALL = st.floats(-100, 100)
@@ -95,39 +95,29 @@ class TestFormation:
 
 
 class TestGains:
-    def test_the_interval(self) -> None:
-        assert gain_interval(0.5) == (1.125, 1.875)
-        assert gain_interval(0.01, sigma=4.0) == (1.0002, 1.9998)
-
-    @given(st.floats(0.1, 2.9), st.lists(st.floats(0.01, 1), min_size=2, max_size=4))
-    def test_the_derivation(self, alpha_times_period: float, weights: list[float]) -> None:
-        """The two-step recursion of the module holds, and is a convex combination exactly inside the interval."""
-        T, n = 0.7, len(weights) + 1
-        alpha, sigma = alpha_times_period / T, sum(weights)
-        rng = np.random.default_rng(7)
-        p0, p1, neighbours = rng.normal(size=3).tolist(), None, rng.normal(size=(2, n - 1))
-        p, q = p0[0], p0[1]
-        positions = [p]
-        for k in range(2):
-            u = sum(a * (other - p) for a, other in zip(weights, neighbours[k], strict=True)) - alpha * q
-            p, q = (float(a) for a in double_integrator(np.float64(p), np.float64(q), np.float64(u), T))
-            positions.append(p)
-        p0, p1, p2 = positions
-        ahead, behind = 2 - alpha * T - T * T / 2 * sigma, alpha * T - 1 - T * T / 2 * sigma
-        mixed = ahead * p1 + behind * p0 + T * T / 2 * float(np.dot(weights, neighbours[0] + neighbours[1]))
-        assert p2 == pytest.approx(mixed, abs=1e-9)
-        low, high = gain_interval(T, sigma)
-        assert (low <= alpha * T <= high) == (ahead >= 0 and behind >= 0)
-
-    def test_defaults_lie_inside_and_the_papers_example_outside(self) -> None:
+    def test_the_defaults_and_the_papers_example(self) -> None:
         graph = as_digraph(nx.complete_graph(5))
-        uniform, unit = arc_weights(graph, "uniform"), arc_weights(graph, "unit")
-        assert promise_gap(graph, DP_MSR, 1, 1.0, node_gains(graph, None, 1.0), uniform) is None
-        for alpha in (2.0, 3.0, 10.0):
-            said = promise_gap(graph, DP_MSR, 1, 0.01, node_gains(graph, alpha, 0.01), unit)
-            assert said is not None
-            assert "nothing is promised" in said
-        assert promise_gap(graph, W_MSR, 1, 0.01, node_gains(graph, 2.0, 0.01), unit) is None
+        everybody = range(5)
+        assert fleet_of(graph, DP_MSR, 1, 1.0, None, "uniform").gap(everybody) is None
+        for alpha, is_inside in ((2.0, False), (3.0, False), (10.0, True)):
+            said = fleet_of(graph, DP_MSR, 1, 0.01, alpha, "unit").gap(everybody)
+            assert (said is None) == is_inside
+            assert is_inside or "nothing is promised" in str(said)
+            assert fleet_of(graph, DP_MSR, 1, 0.01, alpha, "uniform").gap(everybody) is None
+        assert fleet_of(graph, W_MSR, 1, 0.01, 2.0, "unit").gap(everybody) is None
+
+    def test_only_normal_vehicles_count(self) -> None:
+        graph = as_digraph(nx.complete_graph(5))
+        fleet = fleet_of(graph, DP_MSR, 1, 0.01, {0: 2.0, 1: 2.0, 2: 2.0, 3: 2.0, 4: 1.0}, "uniform")
+        assert fleet.gap([0, 1, 2, 3]) is None
+        assert "node 4" in str(fleet.gap(range(5)))
+
+    def test_with_the_defaults_nothing_is_promised_when_nothing_is_dropped(self) -> None:
+        """T = 1 and kept weights that add up to 1: vehicles can swap for ever."""
+        for n in (3, 7, 50):
+            graph = as_digraph(nx.complete_graph(n))
+            assert "not below 1" in str(fleet_of(graph, DP_MSR, 0, 1.0, None, "uniform").gap([0]))
+            assert fleet_of(graph, DP_MSR, 1, 1.0, None, "uniform").gap([0]) is None
 
     def test_a_run_outside_warns_and_claims_no_safety(self) -> None:
         graph = as_digraph(nx.complete_graph(4))

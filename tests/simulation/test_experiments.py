@@ -65,6 +65,13 @@ class TestThePapersSettings:
         assert result.as_reported is None
         assert result.outcome.verdict.value == "agreement"
 
+    def test_when_the_truth_is_heard_at_even_steps_the_wheel_agrees_in_setting_2(self) -> None:
+        """Only the claims of odd steps are given; vehicles 1 and 5 update at even ones."""
+        result = play("setting-2", "figure read as wheel", "says where it is")
+        assert result.as_reported is None
+        assert result.outcome.verdict.value == "agreement"
+        assert result.outcome.groups[0][0] == pytest.approx(266.13, abs=0.01)
+
     def test_their_gains_lie_outside_the_theory(self) -> None:
         for setting in ("setting-1", "setting-2"):
             case = EXPERIMENTS[setting].cases()[0]
@@ -76,9 +83,10 @@ class TestThePapersSettings:
     @pytest.mark.parametrize("setting", ["setting-1", "setting-2"])
     def test_every_reading(self, setting: str) -> None:
         results = run_experiment(EXPERIMENTS[setting])
-        assert len(results) == 5
         assert all(result.as_reported is not False for result in results)
-        assert [result.outcome.verdict.value for result in results] == ["split"] * 3 + ["agreement"] * 2
+        ends = [result.outcome.verdict.value for result in results]
+        assert ends == ["split"] * 3 + ["agreement"] * (len(results) - 3)
+        assert len(results) == {"setting-1": 5, "setting-2": 6}[setting]
 
 
 def _without_steps(scenario: Scenario) -> dict[str, Any]:
@@ -91,15 +99,18 @@ def test_every_other_experiment_ends_as_the_theorems_say(name: str) -> None:
     assert results
     for result in results:
         assert result.as_reported, (result.case.name, result.outcome)
-        assert result.outcome.safe is True
+        inside = result.outcome.promise is None
+        assert result.outcome.safe is (True if inside else None)
+        if name in ("gains-outside", "swap", "push"):
+            assert (result.outcome.verdict.value == "agreement") == inside
         json.dumps(result.as_dict(), allow_nan=False)
 
 
 def test_the_numbers_of_cases() -> None:
     counts = {name: len(experiment.cases()) for name, experiment in EXPERIMENTS.items()}
     assert counts == {
-        "setting-1": 5, "setting-2": 5, "proposition-1": 6, "necessity": 12, "sufficiency": 3, "gap": 4,
-        "corollary-1": 1, "corollary-2": 3,
+        "setting-1": 5, "setting-2": 6, "proposition-1": 6, "necessity": 12, "sufficiency": 3, "gap": 4,
+        "corollary-1": 1, "corollary-2": 6, "gains-outside": 10, "swap": 4, "push": 2,
     }  # fmt: skip
 
 
@@ -219,7 +230,7 @@ class TestPictures:
         draw_runs([self.recorded()], tmp_path / "run.svg", quantities=("velocity",))
         picture = (tmp_path / "run.svg").read_text()
         assert picture.count("<!-- velocity v -->") == 1
-        assert all(f"<!-- {label} -->" in picture for label in (0, 1, 2))
+        assert "<!-- {0, 1, 2} at" in picture
 
     def test_refusals(self, tmp_path: Path) -> None:
         run = self.recorded()

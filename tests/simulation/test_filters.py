@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robustness.kernels.steps import drop_extremes
 from robustness.simulation.filters import kept_by_msr
-from robustness.simulation.kernels import _drop_extremes
 from robustness.simulation.reference import kept_neighbours
 
 #: Few different values, so that ties and exact zeros are the rule.
@@ -27,7 +27,7 @@ def by_hand(values: list[float], f: int, *, strict: bool) -> list[int]:
 def compiled(values: list[float], f: int, *, strict: bool) -> list[int]:
     count = len(values)
     keep = np.empty(count, np.uint8)
-    _drop_extremes(np.array(values), count, f, strict, np.empty(count), np.empty(count), keep)
+    drop_extremes(np.array(values), count, f, strict, np.empty(count), np.empty(count), keep)
     return np.flatnonzero(keep).tolist()
 
 

@@ -42,6 +42,15 @@ class TestVerdict:
         gap[-1] = np.nextafter(8.0, 9.0)
         assert verdict(gap)[0] is RunVerdict.UNDECIDED
 
+    def test_a_gap_that_repeats_to_the_last_bit_is_a_split_too(self) -> None:
+        """Vehicles that swap places: 100, 0, 100, 0, ...; half of the dwell time shows whether it repeats."""
+        gap = np.tile([8.0, 0.0], 10)
+        assert verdict(gap) == (RunVerdict.SPLIT, False)
+        gap[-1] += 1e-9
+        assert verdict(gap)[0] is RunVerdict.UNDECIDED
+        assert verdict(np.tile([8.0, 0.0, 3.0], 7)[:20])[0] is RunVerdict.UNDECIDED  # a turn of 3 in 5 states
+        assert verdict(np.tile([0.05, 0.0], 10))[0] is RunVerdict.AGREEMENT
+
     def test_watched_groups_decide_alone(self) -> None:
         gap = np.full(20, 8.0)
         assert verdict(gap, watched=True, unchanged=True) == (RunVerdict.SPLIT, True)

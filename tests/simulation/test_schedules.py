@@ -23,7 +23,7 @@ from robustness.simulation import (
 )
 from robustness.simulation.adversaries import Constant
 from robustness.simulation.adversaries.protocol import View
-from robustness.simulation.run import Batch
+from robustness.simulation.engine import Batch
 from robustness.simulation.schedules import (
     AdversarialDelays,
     AdversarialUpdates,
@@ -54,7 +54,7 @@ def played(schedule: Schedule, steps: int = 60, runs: int = 4) -> tuple[np.ndarr
         batch.act(step)
         view = View(batch.setting, step, batch.p, batch.q, batch.previous, batch.last_update)
         updates.append(np.broadcast_to(original(view), batch.p.shape).copy())
-        delays.append(np.broadcast_to(batch._delays(view), (runs, FIVE.union.arc_count)).copy())
+        delays.append(np.broadcast_to(batch.delays(view), (runs, FIVE.union.arc_count)).copy())
         batch.advance(step, Pool())  # one part runs without a pool
     return np.array(updates), np.array(delays)
 
@@ -106,7 +106,7 @@ def test_the_worst_delay_is_the_least_that_shows_the_extreme(step: int) -> None:
     batch.p = draws.integers(0, 5, batch.p.shape).astype(float)
     batch.act(step)
     view = View(batch.setting, step, batch.p, batch.q, batch.previous, batch.last_update)
-    delays, setting = batch._delays(view), batch.setting
+    delays, setting = batch.delays(view), batch.setting
     for b in range(2):
         normal = batch.p[b][~setting.malicious[b]]
         middle = (normal.min() + normal.max()) / 2
@@ -200,7 +200,7 @@ class TestTopology:
         for part in parts:
             part.add_nodes_from(range(5))
         topology = as_topology(TimeVaryingGraph(parts, period=period), 400)
-        scenario = Scenario(topology, 0, schedule=Schedule(tau=3), steps=400)
+        scenario = Scenario(topology, 0, schedule=Schedule(tau=3), steps=400, T=0.9)
         (outcome,) = simulate(scenario, [random_start(topology.union, [], 0)])
         assert outcome.verdict.value == "agreement"
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import robustness as rb
-from robustness.decision.algorithms import Limits
 from robustness.decision.algorithms.exhaustive import decide as exhaustive
+from robustness.limits import Limits
 from robustness.time_varying import TimeVaryingGraph, UnionVerdict, check_joint_robustness
 from robustness.time_varying.deciding import RULES, UnionDecider
 from robustness.time_varying.growth import Arcs, Seed, find_seed, grow
@@ -186,11 +186,11 @@ def test_no_seed_of_a_graph_that_only_the_whole_keeps_robust() -> None:
 
 def test_past_the_deadline_what_is_known_is_still_used() -> None:
     sequence = TimeVaryingGraph([nx.complete_graph(5)] * 2 + [nx.empty_graph(5)])
-    decider = UnionDecider(sequence, 2, 1, deadline=time.monotonic() + 600)
+    decider = UnionDecider(sequence, 2, 1, limits=Limits(deadline=time.monotonic() + 600))
     window = SlidingUnion(sequence)
     window.move(0, 1)
     assert decider.decide(window)[1].verdict is rb.Verdict.ROBUST
-    decider._deadline = 0.0
+    decider._limits = Limits(deadline=0.0)
     window.move(1, 1)
     assert decider.decide(window)[1].verdict is rb.Verdict.ROBUST
     window.move(2, 1)

@@ -7,6 +7,7 @@ import random
 from pathlib import Path
 
 import networkx as nx
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
@@ -16,7 +17,11 @@ from cli.exit_codes import ExitCode
 from cli.interruption import Overrun
 from cli.main import robustness
 from robustness.errors import InvalidParameter
-from robustness.simulation import as_topology
+from robustness.simulation import Scenario, Schedule, Start, as_topology
+from robustness.simulation.adversaries import Alternating
+from robustness.simulation.adversaries.protocol import View
+from robustness.simulation.run import simulate
+from robustness.simulation.schedules import EveryStep, Past
 from robustness.threat_models import Standing, certify_tolerance, tolerance
 from robustness.time_varying import TimeVaryingGraph, canonical_sequence
 from tests.oracles import brute_profile
@@ -45,7 +50,10 @@ def drawn(count: int) -> list[tuple[TimeVaryingGraph, int]]:
 
 
 def promised(sequence: TimeVaryingGraph, tau: int) -> int:
-    """Return the largest f with a jointly (2f+1)-robust window of at most tau steps, union by union; -1 without."""
+    """Return the largest f with a jointly (2f+1)-robust window of at most tau steps, union by union; -1 without.
+
+    With delays of at most 1 and updates at every step these are the windows that promise.
+    """
     best = -1
     for f in range(sequence.n):
         for length in range(1, tau + 1):
@@ -60,7 +68,7 @@ def promised(sequence: TimeVaryingGraph, tau: int) -> int:
 def test_as_defined(part: int) -> None:
     for sequence, tau in drawn(24)[part::2]:
         union = sequence.union(0, len(sequence))
-        table = tolerance(sequence, tau=tau)
+        table = tolerance(sequence, tau=tau, delay=1)
         assert list(table) == ["delayed", "delayed-local"]
         for result in table.results:
             trapped = next(f for f in range(10) if has_trap(union.in_masks, f, result.threat.local))
@@ -71,7 +79,7 @@ def test_as_defined(part: int) -> None:
 
 def test_the_attack_splits_the_sequence_itself() -> None:
     for sequence, tau in drawn(8):
-        for result in tolerance(sequence, tau=tau).results:
+        for result in tolerance(sequence, tau=tau, delay=1).results:
             attack = result.attack
             assert attack is not None
             if sequence.period is None:
@@ -79,23 +87,85 @@ def test_the_attack_splits_the_sequence_itself() -> None:
             assert attack.run(30, network=as_topology(sequence, 30)).exact
 
 
+def halves_of_k5() -> TimeVaryingGraph:
+    """K_5, whose even steps lack the links 03 and 12 and whose odd steps lack 02 and 13."""
+    steps = []
+    for lost in ([(0, 3), (1, 2)], [(0, 2), (1, 3)]):
+        step = nx.complete_graph(5)
+        step.remove_edges_from(lost)
+        steps.append(step)
+    return TimeVaryingGraph(steps, period=2)
+
+
+def test_the_corollary_as_printed_is_false_and_nothing_is_promised_by_it() -> None:
+    """Jointly 3-robust over l = 2 <= tau = 2 steps; yet with all delays 2 one liar splits it for ever."""
+    sequence = halves_of_k5()
+    assert rb.check_joint_robustness(sequence, 3, tau=2).within_tau
+    for model in ("delayed", "delayed-local"):
+        result = tolerance(sequence, model, tau=2)
+        assert result.guaranteed < 1
+        assert result.standing(1) is not Standing.GUARANTEED
+        # Delays of at most 1 leave room for windows of two steps.
+        assert tolerance(sequence, model, tau=2, delay=1).guaranteed == 1
+
+
+#: tau, delay, gap, and the greatest l with (l - 1) + (gap - 1) + delay <= tau.
+SPANS = [(2, None, None, 1), (5, 2, 1, 4), (5, 2, 3, 2), (3, 3, 3, -1)]
+
+
+class Late:
+    """Every message takes so many steps, unless the adversary hurries one of its own."""
+
+    adversarial = True
+
+    def __init__(self, bound: int) -> None:
+        self.bound = bound
+
+    def delays(self, view: View, past: Past) -> np.ndarray:
+        return np.full((1, view.setting.graph.arc_count), self.bound, dtype=np.int64)
+
+
+def test_the_counterexample_splits_in_the_simulator() -> None:
+    """All delays are 2, values are used for 2 steps: whoever updates hears one half alone, and 4 has two faces."""
+    scenario = Scenario(
+        as_topology(halves_of_k5(), 300),
+        f=1,
+        steps=300,
+        T=0.5,
+        alpha=3.0,
+        schedule=Schedule(EveryStep(), Late(2), tau=2),
+        adversary=Alternating(0.0, 100.0, (0, 1), (2, 3)),
+        groups=((0, 1), (2, 3)),
+    )
+    (outcome,) = simulate(scenario, [Start(frozenset({4}), (0.0, 0.0, 100.0, 100.0, 50.0), (0.0,) * 5, 0)])
+    assert outcome.exact
+
+
+@pytest.mark.parametrize(("tau", "delay", "gap", "longest"), SPANS)
+def test_how_long_windows_may_be(tau: int, delay: int | None, gap: int | None, longest: int) -> None:
+    sequence = spread(nx.complete_graph(8), 4, 4)
+    result = tolerance(sequence, "delayed", tau=tau, delay=delay, gap=gap)
+    assert result.longest_window == longest
+    assert result.guaranteed == (promised(sequence, longest) if longest >= 1 else -1)
+
+
 def test_more_tau_promises_more() -> None:
     sequence = spread(nx.complete_graph(8), 4, 4)
-    assert [tolerance(sequence, "delayed", tau=tau).guaranteed for tau in (1, 2, 3, 4)] == [-1, 0, 1, 1]
-    (first, *_) = tolerance(sequence, "delayed", tau=3).reasons
-    assert "jointly 3-robust over every 3 steps, within tau = 3" in first.statement
+    assert [tolerance(sequence, "delayed", tau=tau, delay=1).guaranteed for tau in (1, 2, 3, 4)] == [-1, 0, 1, 1]
+    (first, *_) = tolerance(sequence, "delayed", tau=3, delay=1).reasons
+    assert "jointly 3-robust over every 3 steps; windows may have up to 3 steps (tau = 3" in first.statement
     assert "corollary on time-varying networks" in first.theorem
 
 
 def test_a_finite_trace_says_that_it_ends() -> None:
-    (first, *_) = tolerance(spread(nx.complete_graph(6), 2, None), "delayed", tau=2).reasons
+    (first, *_) = tolerance(spread(nx.complete_graph(6), 2, None), "delayed", tau=2, delay=1).reasons
     assert "nothing is said beyond its last step" in first.statement
 
 
 @pytest.mark.parametrize("period", [2, None])
 def test_certificates_are_about_windows_and_about_the_union(period: int | None) -> None:
     sequence = spread(nx.complete_graph(6), 2, period)
-    result = tolerance(sequence, "delayed", tau=2)
+    result = tolerance(sequence, "delayed", tau=2, delay=1)
     found = certify_tolerance(result)
     assert found.guaranteed is not None
     assert found.refuted is not None
@@ -106,14 +176,14 @@ def test_certificates_are_about_windows_and_about_the_union(period: int | None) 
 
 
 def test_no_time_no_certificate() -> None:
-    result = tolerance(spread(nx.complete_graph(6), 2, 2), "delayed", tau=2)
+    result = tolerance(spread(nx.complete_graph(6), 2, 2), "delayed", tau=2, delay=1)
     assert certify_tolerance(result, time_limit=1e-9).guaranteed is None
 
 
 def test_nothing_over_time_is_promised_without_saying_how_far() -> None:
     sentence = "A finite trace is taken to go on as it was"
     for period, said in ((None, True), (2, False)):
-        table = tolerance(spread(nx.complete_graph(6), 2, period), tau=2)
+        table = tolerance(spread(nx.complete_graph(6), 2, period), tau=2, delay=1)
         assert all((sentence in text) == said for text in (table.summary(), table["delayed"].summary()))
 
 
@@ -129,6 +199,13 @@ class TestMisuse:
         with pytest.raises(InvalidParameter, match="tau belongs to a time-varying network"):
             tolerance(nx.path_graph(3), tau=1)
 
+    @pytest.mark.parametrize("name", ["delay", "gap"])
+    def test_delay_and_gap(self, name: str) -> None:
+        with pytest.raises(InvalidParameter, match=f"{name} is an integer of at least 1"):
+            tolerance(self.sequence, tau=1, **{name: 0})
+        with pytest.raises(InvalidParameter, match=f"{name} belongs to a time-varying network"):
+            tolerance(nx.path_graph(3), **{name: 1})
+
     def test_models_without_a_theorem(self) -> None:
         with pytest.raises(InvalidParameter, match="delayed or delayed-local"):
             tolerance(self.sequence, "byzantine", tau=1)
@@ -142,16 +219,16 @@ class TestCommand:
         return done.exit_code, done.stdout
 
     def test_json(self) -> None:
-        code, text = self.run("--tau", "2", "--json")
+        code, text = self.run("--tau", "2", "--delay", "1", "--json")
         assert code == ExitCode.DONE
         assert [model["model"] for model in json.loads(text)["models"]] == ["delayed", "delayed-local"]
 
     @pytest.mark.parametrize(("f", "code"), [(0, ExitCode.DONE), (1, ExitCode.REFUTED)])
     def test_gate(self, f: int, code: ExitCode) -> None:
-        assert self.run("--tau", "2", "--require", str(f))[0] == code
+        assert self.run("--tau", "2", "--delay", "1", "--require", str(f))[0] == code
 
     def test_files(self, tmp_path: Path) -> None:
-        assert self.run("--tau", "2", "-o", str(tmp_path))[0] == ExitCode.DONE
+        assert self.run("--tau", "2", "--delay", "1", "-o", str(tmp_path))[0] == ExitCode.DONE
         read = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
         for model in ("delayed", "delayed-local"):
             promised = verify_joint(read["sequence.json"], read[f"{model}-guaranteed-0.cert"])
@@ -163,18 +240,19 @@ class TestCommand:
             raise Overrun
 
         monkeypatch.setattr("cli.tolerance.interruptibly", overrun)
-        code, text = self.run("--tau", "2", "--json")
+        code, text = self.run("--tau", "2", "--delay", "1", "--json")
         assert code == ExitCode.UNDECIDED
         assert [model["model"] for model in json.loads(text)["models"]] == ["delayed", "delayed-local"]
 
     def test_usage(self) -> None:
-        assert self.run("--period", "2")[0] == ExitCode.USAGE
+        for option in ("--period", "--delay", "--gap"):
+            assert self.run(option, "2")[0] == ExitCode.USAGE
         assert self.run("--tau", "2", "--model", "byzantine")[0] == ExitCode.USAGE
 
 
 def test_an_undecided_window_promises_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     undecided = rb.JointResult(rb.Verdict.UNDECIDED, 1, 1, reason="the time limit was reached")
-    monkeypatch.setattr("robustness.threat_models.over_time.check_joint_robustness", lambda *_, **__: undecided)
-    result = tolerance(spread(nx.complete_graph(5), 2, 2), "delayed", tau=2)
+    monkeypatch.setattr("robustness.threat_models.over_time.check_joint_within", lambda *_, **__: undecided)
+    result = tolerance(spread(nx.complete_graph(5), 2, 2), "delayed", tau=2, delay=1)
     assert result.guaranteed == -1
     assert result.standing(0) is Standing.UNDECIDED

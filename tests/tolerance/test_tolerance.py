@@ -9,6 +9,7 @@ import pytest
 
 import robustness as rb
 from robustness.errors import InvalidGraph, InvalidParameter
+from robustness.limits import Limits
 from robustness.threat_models import THREAT_MODELS, Standing, tolerance
 from robustness.threat_models.confirming import confirm
 from robustness.threat_models.deciding import Decisions, certain_attack
@@ -141,10 +142,10 @@ class TestLimits:
 
     def test_nothing_decided_promises_nothing(self, monkeypatch: pytest.MonkeyPatch) -> None:
         undecided = rb.RobustnessResult(rb.Verdict.UNDECIDED, 1, 1)
-        monkeypatch.setattr("robustness.threat_models.deciding.check_rs_robustness", lambda *_, **__: undecided)
+        monkeypatch.setattr("robustness.threat_models.deciding.check_within", lambda *_, **__: undecided)
         monkeypatch.setattr("robustness.threat_models.deciding.settle_trap", lambda *_: None)
         monkeypatch.setattr("robustness.threat_models.deciding.decide_trap", lambda *_: (None, None, "search", {}))
-        decisions = Decisions(rb.Digraph.from_networkx(nx.complete_graph(4)), None)
+        decisions = Decisions(rb.Digraph.from_networkx(nx.complete_graph(4)), Limits())
         for threat in THREAT_MODELS.values():
             result = judge(decisions, threat)
             assert (result.guaranteed, result.refuted, result.attack_sets) == (-1, None, None)

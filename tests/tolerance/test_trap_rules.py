@@ -10,8 +10,17 @@ import numpy as np
 import pytest
 
 import robustness as rb
+from robustness.kernels.layout import (
+    MALICIOUS,
+    NORMAL,
+)
+from robustness.kernels.layout import TRAP_F as F
+from robustness.kernels.layout import TRAP_P as P
+from robustness.kernels.layout import TRAP_Q as Q
+from robustness.kernels.layout import TRAP_T as T
+from robustness.kernels.layout import TRAP_Z as Z
+from robustness.kernels.trap_rules import TrapRules, assume
 from robustness.traps import find_trap
-from robustness.traps.kernel import MALICIOUS, NORMAL, F, P, Q, T, Z, assume, propagate
 from robustness.traps.question import Question, Sets, solves
 from robustness.traps.searching import _whole_state
 from tests.tolerance.brute_force import has_standing_attack, has_trap
@@ -86,9 +95,9 @@ def test_propagation_keeps_every_solution(two_faces: bool, local: bool) -> None:
                 literals = [literal_of(node, roles[node]) for node in known if roles[node] != "-"]
             state = _whole_state(n, 1)
             for kind, side, node, true in literals:
-                assume(state, kind, side, node, true, int(two_faces))
+                assume(state, kind, side, node, true, two_faces)
             expected = [roles for roles, _ in every if all(obeys(roles, each, two_faces) for each in literals)]
-            alive = propagate(state, graph.in_words, need, question.f, int(two_faces), int(local), 1)
+            alive = TrapRules(graph.in_words, need, question.f, two_faces, local, True).propagate(state)
             assert alive or not expected, (graph.in_masks, question, literals, expected[:1])
             closed += not alive
             for roles in expected if alive else ():

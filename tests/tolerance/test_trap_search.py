@@ -17,8 +17,8 @@ import pytest
 
 import robustness as rb
 from robustness.constructions import two_f_robust_counterexample
-from robustness.decision.algorithms import Limits, Progress
 from robustness.errors import InternalError, InvalidParameter, Undecided
+from robustness.limits import Limits, Progress
 from robustness.traps import TRAP_ALGORITHMS, find_trap
 from robustness.traps.finding import decide_trap
 from robustness.traps.question import Question, Sets, obeys_bound, solves

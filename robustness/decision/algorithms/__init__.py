@@ -8,16 +8,17 @@ violating pair of (r,s)-robustness, or proves that none exists, or says UNDECIDE
 from __future__ import annotations
 
 import importlib
-import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, NamedTuple, Protocol, cast
 
 from robustness.digraph import Digraph
+from robustness.errors import InvalidParameter
+from robustness.limits import Limits
 from robustness.results import Verdict
 
-__all__ = ["ALGORITHMS", "Algorithm", "Answer", "Limits", "Pair", "Progress"]
+__all__ = ["ALGORITHMS", "OPTIONS", "Algorithm", "Answer", "Pair", "require_algorithm", "require_options"]
 
 
 class Pair(NamedTuple):
@@ -25,44 +26,6 @@ class Pair(NamedTuple):
 
     first: frozenset[int]
     second: frozenset[int]
-
-
-@dataclass(frozen=True, slots=True)
-class Progress:
-    """What a long search reports now and then: counters, and what it is doing in a few words."""
-
-    nodes: int
-    note: str
-
-
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """How long and how hard an algorithm may work.
-
-    Attributes
-    ----------
-    deadline : float or None
-        A value of ``time.monotonic()``; past it the answer is UNDECIDED.
-    jobs : int
-        Threads.
-    seed : int
-        Of every random choice.
-    progress : callable or None
-        Called with a :class:`Progress` a few times a second.
-    """
-
-    deadline: float | None = None
-    jobs: int = 1
-    seed: int = 0
-    progress: Callable[[Progress], None] | None = None
-
-    def seconds_left(self) -> float:
-        """Return the seconds until the deadline (``inf`` without one, never negative)."""
-        return float("inf") if self.deadline is None else max(0.0, self.deadline - time.monotonic())
-
-    def expired(self) -> bool:
-        """Return whether the deadline has passed."""
-        return self.deadline is not None and time.monotonic() >= self.deadline
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +55,40 @@ def _lazily(module: str) -> Algorithm:
 
     decide.__name__ = module
     return decide
+
+
+#: The switches of each algorithm, by its name; ``auto`` takes those of the search that it ends in.
+OPTIONS: Mapping[str, frozenset[str]] = MappingProxyType(
+    {
+        "auto": frozenset({"transcript", "blockers", "look_ahead"}),
+        "exhaustive": frozenset(),
+        "transform": frozenset(),
+        "subset-search": frozenset({"transcript", "blockers", "look_ahead"}),
+        "milp": frozenset({"solver", "pair_counting"}),
+        "cp-sat": frozenset({"pair_counting"}),
+    }
+)
+
+
+def require_algorithm(name: str) -> None:
+    """Raise InvalidParameter unless ``name`` is ``"auto"`` or in :data:`ALGORITHMS`."""
+    if name not in OPTIONS:
+        raise InvalidParameter(f"algorithm is 'auto' or one of {', '.join(ALGORITHMS)}, not {name!r}")
+
+
+def require_options(function: str, algorithm: str, options: Mapping[str, Any]) -> None:
+    """Raise the TypeError of a function that is called with a keyword it does not have.
+
+    It is raised before anything is decided, so that a slip such as ``timeout=`` for ``time_limit=`` is told on every
+    graph, and never mistaken for a fault inside an algorithm.
+    """
+    for name in options:
+        if name not in OPTIONS[algorithm]:
+            known = ", ".join(sorted(OPTIONS[algorithm])) or "none"
+            raise TypeError(
+                f"{function}() got an unexpected keyword argument {name!r}; "
+                f"the switches of algorithm {algorithm!r}: {known}"
+            )
 
 
 #: Every exact algorithm by the name users type.

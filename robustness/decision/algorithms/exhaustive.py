@@ -7,8 +7,9 @@ the definition itself. All other algorithms are compared with this one.
 
 from __future__ import annotations
 
-from robustness.decision.algorithms import Answer, Limits, Pair
+from robustness.decision.algorithms import Answer, Pair
 from robustness.digraph import Digraph
+from robustness.limits import Limits
 from robustness.results import Verdict
 
 __all__ = ["decide"]

@@ -6,9 +6,10 @@ among the feasible solutions of the (r,s) programme; r* and s_max(r) are also mi
 
 from __future__ import annotations
 
-from robustness.decision.algorithms import Answer, Limits, model_solving
+from robustness.decision.algorithms import Answer, model_solving
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
+from robustness.limits import Limits
 from robustness.results import Bounds
 
 __all__ = ["SOLVERS", "decide", "largest_r", "largest_s"]

@@ -15,7 +15,7 @@ from concurrent.futures import Future, wait
 from datetime import timedelta
 from typing import TYPE_CHECKING, Any
 
-from robustness.decision.algorithms import Answer, Limits, Pair, Progress
+from robustness.decision.algorithms import Answer, Pair
 from robustness.decision.algorithms.violation_model import (
     ViolationModel,
     all_pairs,
@@ -26,6 +26,7 @@ from robustness.decision.algorithms.violation_model import (
 from robustness.definitions import is_violation, r_reachable_ids
 from robustness.digraph import Digraph
 from robustness.errors import InternalError, Undecided
+from robustness.limits import Limits, Progress
 from robustness.results import Bound, Bounds, Verdict, Witness
 
 if TYPE_CHECKING:

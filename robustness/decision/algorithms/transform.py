@@ -25,13 +25,14 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from robustness.decision.algorithms import Answer, Limits, Pair, Progress
+from robustness.decision.algorithms import Answer, Pair
 from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph
 from robustness.errors import Undecided
+from robustness.limits import Limits, Progress
 from robustness.results import Verdict
 
-__all__ = ["available_memory", "decide", "memory_needed", "profile"]
+__all__ = ["available_memory", "decide", "largest_s", "memory_needed", "profile"]
 
 _Bytes = npt.NDArray[np.uint8]
 
@@ -74,15 +75,26 @@ def decide(graph: Digraph, r: int, s: int, limits: Limits) -> Answer:
     <Verdict.NOT_ROBUST: 'not-robust'>
     """
     try:
-        lattice = _Lattice(graph, limits)
-        total, first = lattice.least_exempt(r)
+        greatest, pair = largest_s(graph, r, limits)
     except Undecided as limit:
         return Answer(Verdict.UNDECIDED, stats={"sets": 0, "reason": str(limit)})
     stats = {"sets": 1 << graph.n}
-    if total >= s:
+    if pair is None or greatest >= s:
         return Answer(Verdict.ROBUST, stats=stats)
+    return Answer(Verdict.NOT_ROBUST, pair, stats)
+
+
+def largest_s(graph: Digraph, r: int, limits: Limits) -> tuple[int, Pair | None]:
+    """Return s_max(r), at most n, and a pair with so few exempt nodes; None when no pair violates (r,s) for any s.
+
+    Takes, costs and raises what :func:`profile` does, for one r.
+    """
+    lattice = _Lattice(graph, limits)
+    total, first = lattice.least_exempt(r)
+    if total >= graph.n:
+        return graph.n, None
     second = lattice.least_subset(((1 << graph.n) - 1) ^ first)
-    return Answer(Verdict.NOT_ROBUST, Pair(_ids(lattice.least_subset(first)), _ids(second)), stats)
+    return total, Pair(_ids(lattice.least_subset(first)), _ids(second))
 
 
 def profile(graph: Digraph, limits: Limits) -> dict[int, int]:

@@ -52,10 +52,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from robustness.decision.algorithms import Limits, Pair
+from robustness.decision.algorithms import Pair
 from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph
 from robustness.errors import Undecided
+from robustness.limits import Limits
 
 if TYPE_CHECKING:
     from ortools.math_opt.python import mathopt

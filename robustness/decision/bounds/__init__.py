@@ -2,12 +2,11 @@
 
 Memory is linear in the arcs, except for the spectral bound, which leaves graphs on more than 150 nodes alone. Every
 lower bound is a theorem whose hypotheses were checked in integers; every upper bound below ceil(n/2) carries a pair
-that was checked against the definition. Nothing here is a guess, whatever the time budget.
+that was checked against the definition. Nothing here is a guess, whatever the budget.
 """
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
@@ -19,6 +18,7 @@ from robustness.decision.bounds.local_search import TINY, best_upper_bound, find
 from robustness.decision.bounds.spectral import Spectral, spectral_bound, spectral_evidence
 from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph
+from robustness.limits import Steps
 from robustness.results import Bound, Bounds, Verdict, Witness
 
 __all__ = ["Growth", "Settled", "Spectral", "all_bounds", "bounds", "settle"]
@@ -29,6 +29,9 @@ _SPECTRAL_NODES = 150
 
 #: Up to this many nodes exact search is tried before growth: it settles most of what growth would.
 _SMALL = 256
+
+#: The budget of a caller that names none: about a second.
+_DEFAULT_STEPS = 1_000_000_000
 
 #: Restarts of the local search that come before anything that costs more.
 _FEW_RESTARTS = 4
@@ -62,8 +65,7 @@ def settle(
     s: int = 1,
     *,
     seed: int = 0,
-    time_budget: float = 1.0,
-    stop: Callable[[], bool] | None = None,
+    steps: Steps | None = None,
 ) -> Settled | None:
     """Decide (r,s)-robustness by bounds alone, or return None.
 
@@ -73,13 +75,13 @@ def settle(
         With n >= 2; the front settles the rest by convention.
     r, s : int
         At least 1.
-    seed, time_budget, stop
+    seed, steps
         Of the heuristics: see :func:`robustness.decision.bounds.local_search.find_violation`. The linear-time
         rules always run.
 
     Notes
     -----
-    Time and memory linear in the arcs before the heuristics, which keep to the budget.
+    Time and memory linear in the arcs before the heuristics, which keep to the budget of steps.
 
     >>> import networkx as nx
     >>> settle(Digraph.from_networkx(nx.star_graph(4)), 2).rule
@@ -98,7 +100,8 @@ def settle(
             return Settled(Verdict.NOT_ROBUST, "two sets hear nobody outside", pair)
     if graph.n <= TINY:
         return None
-    growth = find_growth(graph, r, s, time_budget=time_budget / 3)
+    steps = steps or Steps(_DEFAULT_STEPS)
+    growth = find_growth(graph, r, s, steps=steps.part(steps.left // 3))
     if growth is not None:
         return Settled(Verdict.ROBUST, f"growth from {len(growth.seed)} nodes", evidence=growth)
     spectral = spectral_evidence(graph) if graph.n <= _SPECTRAL_NODES else None
@@ -108,7 +111,7 @@ def settle(
         pair = separating_pair(graph)
         if pair is not None:
             return Settled(Verdict.NOT_ROBUST, "a node separates the graph", pair)
-    pair = find_violation(graph, r, s, seed=seed, time_budget=time_budget / 2, restarts=4, stop=stop)
+    pair = find_violation(graph, r, s, seed=seed, steps=steps.part(steps.left // 2), restarts=_FEW_RESTARTS)
     return None if pair is None else Settled(Verdict.NOT_ROBUST, "local search", pair)
 
 
@@ -116,8 +119,7 @@ def bounds(
     graph: Digraph,
     *,
     seed: int = 0,
-    time_budget: float = 1.0,
-    stop: Callable[[], bool] | None = None,
+    steps: Steps | None = None,
     on_bounds: Callable[[Bounds], None] | None = None,
     thorough: bool = True,
 ) -> Bounds:
@@ -126,7 +128,7 @@ def bounds(
     Parameters
     ----------
     graph : Digraph
-    seed, time_budget, stop
+    seed, steps
         As for :func:`settle`.
     on_bounds : callable, optional
         Called with every improvement.
@@ -139,7 +141,7 @@ def bounds(
     (3, 3)
     """
     lower, upper = Bound(0, "every graph is 0-robust"), Bound(largest_conceivable_r(graph.n), "r* <= ceil(n/2)")
-    for is_lower, bound in _in_turn(graph, seed, time_budget, stop, thorough):
+    for is_lower, bound in _in_turn(graph, seed, steps or Steps(_DEFAULT_STEPS), thorough):
         if is_lower and bound.value > lower.value:
             lower = bound
         elif not is_lower and (bound.value < upper.value or (bound.value == upper.value and upper.witness is None)):
@@ -153,22 +155,20 @@ def bounds(
     return Bounds(lower, upper)
 
 
-def all_bounds(graph: Digraph, *, seed: int = 0, time_budget: float = 1.0) -> tuple[list[Bound], list[Bound]]:
+def all_bounds(graph: Digraph, *, seed: int = 0, steps: Steps | None = None) -> tuple[list[Bound], list[Bound]]:
     """Return every lower and every upper bound on r*, for display; those that say nothing are left out."""
-    found = list(_in_turn(graph, seed, time_budget, None, thorough=True))
+    found = list(_in_turn(graph, seed, steps or Steps(_DEFAULT_STEPS), thorough=True))
     return [b for is_lower, b in found if is_lower and b.value > 0], [b for is_lower, b in found if not is_lower]
 
 
-def _in_turn(
-    graph: Digraph, seed: int, time_budget: float, stop: Callable[[], bool] | None, thorough: bool
-) -> Iterator[tuple[bool, Bound]]:
+def _in_turn(graph: Digraph, seed: int, steps: Steps, thorough: bool) -> Iterator[tuple[bool, Bound]]:
     """Yield ``(is it a lower bound?, bound)``, cheapest techniques first."""
     if graph.n < 2:
         settled = Bound(graph.n, "by convention for fewer than two nodes")
         yield True, settled
         yield False, settled
         return
-    ends = time.monotonic() + time_budget
+    for_growth = steps.left // 10  # of one r
     top = largest_conceivable_r(graph.n)
     yield False, Bound(top, "r* <= ceil(n/2)", _witness(graph, half_split(graph)))
     least = max(1, int(graph.in_degrees.min()))
@@ -192,18 +192,17 @@ def _in_turn(
         return
     known, upper = max(1, degree.value), min(least, top)
     for restarts in (_FEW_RESTARTS, None) if thorough else (_FEW_RESTARTS,):
-        left = max(0.0, ends - time.monotonic())
-        value, found = best_upper_bound(
-            graph, seed=seed, time_budget=left, restarts=restarts, lower=known, stop=stop
-        )
+        value, found = best_upper_bound(graph, seed=seed, steps=steps, restarts=restarts, lower=known)
         if found is not None and value < upper:
             upper = value
             yield False, Bound(value, "a violating pair found by local search", _witness(graph, found))
         if restarts is None:
             return
-        while (thorough or graph.n > _SMALL) and known < upper and not (stop is not None and stop()):
-            left = max(0.0, ends - time.monotonic())
-            growth = find_growth(graph, known + 1, time_budget=min(time_budget / 10, left))
+        while (thorough or graph.n > _SMALL) and known < upper and not steps.over():
+            allowed = steps.part(for_growth)
+            before = allowed.left
+            growth = find_growth(graph, known + 1, steps=allowed)
+            steps.spend(before - allowed.left)
             if growth is None:
                 break
             known += 1

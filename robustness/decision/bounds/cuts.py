@@ -50,14 +50,14 @@ def separating_pair(graph: Digraph) -> Pair | None:
     """
     if graph.n < 3 or not graph.is_symmetric:
         return None
-    from robustness.decision.bounds.linear_time import articulation, breadth_first
+    from robustness.kernels.passes import articulation, breadth_first
 
-    indptr, indices = graph.in_indptr.copy(), graph.in_indices.copy()
+    indptr, indices = graph.in_indptr, graph.in_indices
     v = articulation(indptr, indices)
     if v < 0:
         return None
     sets: list[frozenset[int]] = []
-    seen, order = np.zeros(graph.n, np.bool_), np.empty(graph.n, np.int32)
+    seen, order = np.zeros(graph.n, np.uint8), np.empty(graph.n, np.int32)
     seen[v] = True
     for start in graph.in_neighbours(v).tolist():
         size = breadth_first(indptr, indices, start, order, seen, 0)

@@ -18,7 +18,6 @@ The seed itself is proven (r,s)-robust by the degree rule inside it (a complete 
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
@@ -27,6 +26,7 @@ import numpy as np
 import numpy.typing as npt
 
 from robustness.digraph import Digraph
+from robustness.limits import Steps
 
 __all__ = ["Growth", "find_growth", "growth_order"]
 
@@ -68,16 +68,17 @@ def growth_order(graph: Digraph, need: int, seed_ids: Sequence[int]) -> list[int
     """
     if graph.n == len(seed_ids):
         return []
-    from robustness.decision.bounds.linear_time import adjacency, grow
+    from robustness.decision.bounds.adjacency import adjacency
+    from robustness.kernels.passes import grow
 
     order = np.empty(graph.n, np.int32)
     order[: len(seed_ids)] = seed_ids
-    present, heard = np.zeros(graph.n, np.bool_), np.zeros(graph.n, np.int32)
+    present, heard = np.zeros(graph.n, np.uint8), np.zeros(graph.n, np.int32)
     size = grow(*adjacency(graph)[2:], present, heard, order, len(seed_ids), need)
     return order[len(seed_ids) :].tolist() if size == graph.n else None
 
 
-def find_growth(graph: Digraph, r: int, s: int = 1, *, time_budget: float = 1.0) -> Growth | None:
+def find_growth(graph: Digraph, r: int, s: int = 1, *, steps: Steps | None = None) -> Growth | None:
     """Look for a growth certificate of (r,s)-robustness; None says nothing.
 
     Parameters
@@ -85,12 +86,14 @@ def find_growth(graph: Digraph, r: int, s: int = 1, *, time_budget: float = 1.0)
     graph : Digraph
     r, s : int
         At least 1.
-    time_budget : float
-        Seconds after which no further seed is tried.
+    steps : Steps, optional
+        The budget, after which no further seed is tried; without one it has no end.
 
-    Notes ----- Seeds are dense sets around nodes of high in-degree. A seed whose growth stops short bars its whole
-    growth: a seed inside it would grow no further. So all failing growths together take time linear in the arcs
-    times their overlaps. Memory is linear in the arcs.
+    Notes
+    -----
+    Seeds are dense sets around nodes of high in-degree. A seed whose growth stops short bars its whole growth: a seed
+    inside it would grow no further. So all failing growths together take time linear in the arcs times their overlaps.
+    Memory is linear in the arcs.
 
     >>> import networkx as nx
     >>> found = find_growth(Digraph.from_networkx(nx.wheel_graph(6)), 2)
@@ -100,20 +103,22 @@ def find_growth(graph: Digraph, r: int, s: int = 1, *, time_budget: float = 1.0)
     n, need = graph.n, r + s - 1
     if r < 1 or n < 2 or np.count_nonzero(graph.in_degrees < need) > _SEED_LIMIT:
         return None
-    from robustness.decision.bounds.linear_time import adjacency, forget, grow, mother
-    from robustness.decision.bounds.seeds import by_degree, find_seed
+    from robustness.decision.bounds.adjacency import adjacency
+    from robustness.kernels.passes import forget, grow, mother
+    from robustness.kernels.seeds import by_degree, find_seed
 
     arrays = adjacency(graph)
     order = np.empty(n, np.int32)
-    present, heard, barred = np.zeros(n, np.bool_), np.zeros(n, np.int32), np.zeros(n, np.bool_)
+    present, heard, barred = np.zeros(n, np.uint8), np.zeros(n, np.int32), np.zeros(n, np.uint8)
     if r == s == 1:
         order[0] = mother(*arrays[2:])
         size = grow(*arrays[2:], present, heard, order, 1, 1)
         return Growth(1, 1, (int(order[0]),), order[1:], "node") if size == n else None
-    ends = time.monotonic() + time_budget
+    steps = steps or Steps()
     anchors = np.argsort(-graph.in_degrees, kind="stable").astype(np.int32)
     done, limit = 0, min(n, _SEED_LIMIT, 3 * need + 4)
-    while done < n and time.monotonic() < ends:
+    while done < n and not steps.over():
+        steps.spend(_WORK_PER_CALL)
         tried, size = find_seed(*arrays, anchors[done:], barred, r, s, limit, _WORK_PER_CALL, order)
         done += tried
         if not size:

@@ -5,12 +5,11 @@ pair for r* + 1 first is what lets exact search concentrate on refuting a single
 
 What is tried, cheapest first: the smallest in-degree; two sets that hear nobody outside (exact for r = 1); cuts of a
 few node orders, peeled to their cores; small sets around nodes of low in-degree; tabu search
-(:mod:`robustness.decision.bounds.tabu`) from these cuts, from random halves and from breadth-first balls.
+(:mod:`robustness.kernels.tabu`) from these cuts, from random halves and from breadth-first balls.
 """
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -21,15 +20,18 @@ import numpy.typing as npt
 from robustness.decision.algorithms import Pair
 from robustness.decision.bounds.cuts import at_once, half_split
 from robustness.digraph import Digraph
+from robustness.limits import Steps
 
 if TYPE_CHECKING:
-    from robustness.decision.bounds.linear_time import Adjacency
+    from robustness.decision.bounds.adjacency import Adjacency
 
 __all__ = ["best_upper_bound", "fewest_exempt", "find_violation"]
 
-#: Up to this many nodes the compiled kernels, and with them numba, are not loaded: exact search is instant there.
+#: Up to this many nodes heuristics are left out: exact search is instant there.
 TINY = 12
 _CLUMP = 24
+#: Passes over the graph that cutting one node order and peeling both sides of eight cuts take, about.
+_PASSES_OF_A_CUT = 30
 
 
 def find_violation(
@@ -38,9 +40,8 @@ def find_violation(
     s: int = 1,
     *,
     seed: int = 0,
-    time_budget: float = 1.0,
+    steps: Steps | None = None,
     restarts: int | None = None,
-    stop: Callable[[], bool] | None = None,
 ) -> Pair | None:
     """Look for a pair that violates (r,s)-robustness; None says nothing.
 
@@ -51,13 +52,11 @@ def find_violation(
         r >= 1 and 1 <= s <= n.
     seed : int
         Of every random choice.
-    time_budget : float
-        Wall-clock seconds after which no further attempt starts.
+    steps : Steps, optional
+        The budget, after which no further attempt starts; without one it has no end. Unless its ``stop`` cuts the
+        search short, the result depends on the graph, the seed and the budget alone.
     restarts : int, optional
-        At most this many tabu searches of 20 n steps; n by default, so that small graphs cost little. Without
-        the time budget running out, the result depends on the seed alone.
-    stop : callable, optional
-        Asked between attempts (every few milliseconds) whether to give up.
+        At most this many tabu searches of 20 n moves; n by default, so that small graphs cost little.
 
     Returns
     -------
@@ -79,7 +78,7 @@ def find_violation(
         return pair
     if graph.n <= TINY:
         return None
-    search = _Search.of(graph, seed, time_budget, stop)
+    search = _Search.of(graph, seed, steps or Steps())
     found = search.pair(r, s, restarts)
     return None if found is None else search.checked(found, r, s)
 
@@ -88,18 +87,17 @@ def best_upper_bound(
     graph: Digraph,
     *,
     seed: int = 0,
-    time_budget: float = 1.0,
+    steps: Steps | None = None,
     restarts: int | None = None,
     lower: int = 0,
-    stop: Callable[[], bool] | None = None,
     on_pair: Callable[[int, Pair], None] | None = None,
 ) -> tuple[int, Pair | None]:
     """Return ``(u, pair)`` with r* <= u, where ``pair`` violates (u + 1, 1); lowered while pairs are found.
 
     Parameters
     ----------
-    graph, seed, time_budget, restarts, stop
-        As for :func:`find_violation`; ``time_budget`` is for the whole descent.
+    graph, seed, steps, restarts
+        As for :func:`find_violation`; ``steps`` is for the whole descent.
     lower : int
         A proven lower bound on r*: the descent ends there.
     on_pair : callable, optional
@@ -123,7 +121,7 @@ def best_upper_bound(
     while upper > lower:
         found = at_once(graph, upper)
         if found is None and graph.n > TINY:
-            search = search or _Search.of(graph, seed, time_budget, stop)
+            search = search or _Search.of(graph, seed, steps or Steps())
             sets = search.pair(upper, 1, restarts)
             found = None if sets is None else search.checked(sets, upper, 1)
         if found is None:
@@ -139,17 +137,16 @@ def fewest_exempt(
     r: int,
     *,
     seed: int = 0,
-    time_budget: float = 1.0,
+    steps: Steps | None = None,
     restarts: int | None = None,
     lower: int = 0,
-    stop: Callable[[], bool] | None = None,
 ) -> tuple[int, Pair] | None:
     """Return ``(c, pair)`` with s_max(r) <= c: a pair with ``|X_S1^r| + |X_S2^r| = c``, neither side fully reachable.
 
     Parameters
     ----------
-    graph, r, seed, time_budget, restarts, stop
-        As for :func:`find_violation`.
+    graph, r, seed, steps, restarts
+        As for :func:`find_violation`; ``steps`` is for the whole descent.
     lower : int
         A proven lower bound on s_max(r): the descent ends there.
 
@@ -159,11 +156,10 @@ def fewest_exempt(
         None when no such pair with c < n was found.
     """
     best: tuple[int, Pair] | None = None
-    ends = time.monotonic() + time_budget
+    steps = steps or Steps()
     s = graph.n
     while s > lower:
-        left = ends - time.monotonic()
-        pair = find_violation(graph, r, s, seed=seed, time_budget=left, restarts=restarts, stop=stop)
+        pair = find_violation(graph, r, s, seed=seed, steps=steps, restarts=restarts)
         if pair is None:
             break
         s = _exempt(graph, pair, r)
@@ -194,19 +190,19 @@ class _Search:
     graph: Digraph
     arrays: Adjacency
     random: np.random.Generator
-    ends: float
-    stop: Callable[[], bool] | None
+    steps: Steps
     orders: list[npt.NDArray[np.int32]] = field(default_factory=list)
 
     @classmethod
-    def of(cls, graph: Digraph, seed: int, time_budget: float, stop: Callable[[], bool] | None) -> _Search:
-        from robustness.decision.bounds.linear_time import adjacency
+    def of(cls, graph: Digraph, seed: int, steps: Steps) -> _Search:
+        from robustness.decision.bounds.adjacency import adjacency
 
-        return cls(graph, adjacency(graph), np.random.default_rng(seed), time.monotonic() + time_budget, stop)
+        return cls(graph, adjacency(graph), np.random.default_rng(seed), steps)
 
-    def over(self) -> bool:
-        """Return whether to give up."""
-        return time.monotonic() >= self.ends or (self.stop is not None and self.stop())
+    @property
+    def size(self) -> int:
+        """Nodes and arcs: the steps of one pass over the graph."""
+        return self.graph.n + self.graph.arc_count
 
     def checked(self, sets: tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]], r: int, s: int) -> Pair:
         """Return the sets as a pair, after counting again what the definition asks for."""
@@ -228,8 +224,9 @@ class _Search:
                 return found
         cuts = []
         for order in self.node_orders():
-            if self.over():
+            if self.steps.over():
                 return None
+            self.steps.spend(_PASSES_OF_A_CUT * self.size)
             found, state = self.cut(order, r)
             if found is not None:
                 return found
@@ -244,7 +241,7 @@ class _Search:
 
     def node_orders(self) -> Iterator[npt.NDArray[np.int32]]:
         """Yield label order, breadth-first order from a far node, and the order of a smooth function on the nodes."""
-        from robustness.decision.bounds.linear_time import breadth_first, smooth
+        from robustness.kernels.passes import breadth_first, smooth
 
         arrays, n = self.arrays, self.graph.n
         if not self.orders:
@@ -253,7 +250,7 @@ class _Search:
         if len(self.orders) < 2:
             order, size = np.empty(n, np.int32), 0
             for start in (int(self.random.integers(n)), -1):
-                seen, size = np.zeros(n, np.bool_), 0
+                seen, size = np.zeros(n, np.uint8), 0
                 for node in (start if start >= 0 else int(order[-1]), *range(n)):
                     size = breadth_first(*arrays[2:], node, order, seen, size)
                     if size == n:
@@ -262,7 +259,9 @@ class _Search:
         yield self.orders[1]
         if len(self.orders) < 3:
             values = self.random.standard_normal(n)
-            smooth(*arrays, values, max(5, min(100, 100_000_000 // (len(arrays.in_indices) + n))))
+            passes = max(5, min(100, 100_000_000 // (len(arrays.in_indices) + n)))
+            smooth(*arrays, values, passes)
+            self.steps.spend(passes * self.size)
             self.orders.append(np.argsort(values, kind="stable").astype(np.int32))
         yield self.orders[2]
 
@@ -270,10 +269,10 @@ class _Search:
         self, order: npt.NDArray[np.int32], r: int
     ) -> tuple[tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]] | None, npt.NDArray[np.int8]]:
         """Cut ``order`` where few nodes are exposed and peel both sides; return a pair or None, and the middle cut."""
-        from robustness.decision.bounds.linear_time import both_cores, sweep
+        from robustness.kernels.passes import both_cores, sweep
 
         n = self.graph.n
-        first, second = np.empty(n, np.bool_), np.empty(n, np.bool_)
+        first, second = np.empty(n, np.uint8), np.empty(n, np.uint8)
         cuts = np.ones(min(8, n - 1), np.int64)
         sweep(*self.arrays, order, r, cuts)
         state = np.ones(n, np.int8)
@@ -281,54 +280,57 @@ class _Search:
             state[:] = 1
             state[order[:length]] = 0
             if both_cores(*self.arrays, state, r, first, second):
-                return (first, second), state
+                return (first.view(np.bool_), second.view(np.bool_)), state
         state[:] = 1
         state[order[: int(cuts[len(cuts) // 2])]] = 0
         return None, state
 
     def clumps(self, r: int) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]] | None:
         """Look for a small non-r-reachable set around nodes of low in-degree."""
-        from robustness.decision.bounds.linear_time import clump, core
+        from robustness.kernels.passes import clump, core
 
         n = self.graph.n
         anchors = np.argsort(self.arrays.in_indptr[1:] - self.arrays.in_indptr[:-1], kind="stable").astype(np.int32)
         members = np.empty(n, np.int32)
         done = 0
-        while done < n and not self.over():
+        while done < n and not self.steps.over():
+            self.steps.spend(min(2000, n - done) * _CLUMP * (self.size // n))
             tried, size = clump(*self.arrays, anchors[done : done + 2000], min(_CLUMP, n - 1), r, members)
             done += tried
             if size:
-                first = np.zeros(n, np.bool_)
-                first[members[:size]] = True
-                second = ~first
+                first = np.zeros(n, np.uint8)
+                first[members[:size]] = 1
+                second = 1 - first
                 if core(*self.arrays, second, r):
-                    return first, second
+                    return first.view(np.bool_), second.view(np.bool_)
         return None
 
     def tabu(
         self, r: int, s: int, restarts: int, cuts: list[npt.NDArray[np.int8]]
     ) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]] | None:
         """Run tabu searches from the cuts, random halves and balls, each of 20 n steps."""
-        from robustness.decision.bounds.tabu import tabu
+        from robustness.kernels.tabu import tabu
 
         n = self.graph.n
-        first, second = np.empty(n, np.bool_), np.empty(n, np.bool_)
+        first, second = np.empty(n, np.uint8), np.empty(n, np.uint8)
         price = _prices(int(self.graph.in_degrees.max()), r, s)
-        # The stop is asked for every twentieth of a second or so: a step costs about this many nanoseconds.
+        # The stop is asked for after every fifty million steps or so.
         degree = self.graph.arc_count // n + 1
-        steps = max(100, min(20 * n, 50_000_000 // (50 + 20 * degree + degree * degree // 5)))
+        cost = 50 + 20 * degree + degree * degree // 5  # of one move
+        moves = max(100, min(20 * n, 50_000_000 // cost))
         for attempt in range(restarts):
             kind = np.zeros(n, np.int8)
             state = cuts[attempt] if attempt < len(cuts) and s == 1 else self.start(attempt, kind, r, s)
             least = max(1, int(n * (0.4, 0.2, 0.05)[attempt % 3])) if s == 1 else 1
             least = min(least, int((state == 0).sum()), int((state == 1).sum()))
             fee = (2, 2, 3, 1)[attempt % 4] if s == 1 else (2, 0)[attempt % 2]
-            for _ in range(0, 20 * n, steps):
-                if self.over():
+            for _ in range(0, 20 * n, moves):
+                if self.steps.over():
                     return None
+                self.steps.spend(moves * cost)
                 seed = int(self.random.integers(2**31))
-                if tabu(*self.arrays, state, kind, price, r, s, fee, least, steps, 3, seed, first, second):
-                    return first, second
+                if tabu(*self.arrays, state, kind, price, r, s, fee, least, moves, 3, seed, first, second):
+                    return first.view(np.bool_), second.view(np.bool_)
         return None
 
     def start(self, attempt: int, kind: npt.NDArray[np.int8], r: int, s: int) -> npt.NDArray[np.int8]:
@@ -345,10 +347,10 @@ class _Search:
 
     def ball(self) -> npt.NDArray[np.int8]:
         """Return a breadth-first ball of random size around a random node against the rest."""
-        from robustness.decision.bounds.linear_time import breadth_first
+        from robustness.kernels.passes import breadth_first
 
         n = self.graph.n
-        order, seen = np.empty(n, np.int32), np.zeros(n, np.bool_)
+        order, seen = np.empty(n, np.int32), np.zeros(n, np.uint8)
         size = breadth_first(*self.arrays[:2], int(self.random.integers(n)), order, seen, 0)
         state = np.ones(n, np.int8)
         state[order[: min(size, n - 1, 1 + int(self.random.integers(max(1, n // 2))))]] = 0

@@ -20,7 +20,7 @@ from robustness.decision.algorithms import Pair
 from robustness.digraph import Digraph
 
 if TYPE_CHECKING:
-    from robustness.decision.bounds.linear_time import Adjacency
+    from robustness.decision.bounds.adjacency import Adjacency
 
 __all__ = ["one_robustness", "two_closed_sets"]
 
@@ -35,7 +35,7 @@ def one_robustness(graph: Digraph) -> Pair | None:
     """
     if graph.n <= _PLAIN_NODES:
         return _plain(graph)
-    from robustness.decision.bounds.linear_time import adjacency
+    from robustness.decision.bounds.adjacency import adjacency
 
     sets = two_closed_sets(adjacency(graph))
     return None if sets is None else Pair(*(frozenset(np.flatnonzero(side).tolist()) for side in sets))
@@ -43,19 +43,19 @@ def one_robustness(graph: Digraph) -> Pair | None:
 
 def two_closed_sets(arrays: Adjacency) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]] | None:
     """Return two disjoint nonempty sets closed under in-neighbours as masks, or None when one node reaches all."""
-    from robustness.decision.bounds.linear_time import breadth_first, mother
+    from robustness.kernels.passes import breadth_first, mother
 
     n = arrays.n
     root = mother(*arrays[2:])
-    order, reached, reaching = np.empty(n, np.int32), np.zeros(n, np.bool_), np.zeros(n, np.bool_)
+    order, reached, reaching = np.empty(n, np.int32), np.zeros(n, np.uint8), np.zeros(n, np.uint8)
     if breadth_first(*arrays[2:], root, order, reached, 0) == n:
         return None
     breadth_first(*arrays[:2], root, order, reaching, 0)
-    return reaching, ~reached
+    return reaching.view(np.bool_), ~reached.view(np.bool_)
 
 
 def _plain(graph: Digraph) -> Pair | None:
-    """Do the same with Python integers as sets, for graphs so small that loading numba would take longer."""
+    """Do the same with Python integers as sets, for graphs that are small."""
     hears = graph.in_masks
     heard_by = [0] * graph.n
     for u, v in graph.arcs():

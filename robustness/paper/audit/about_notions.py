@@ -45,6 +45,27 @@ def _weakly_connected_without_trap(graph: Digraph) -> str | None:
     return None
 
 
+def _connectivity() -> Outcome:
+    """Is (2f+1)-connectivity needed by MSR rules too? In step it is not; with delays it is."""
+    with_delays = holding(_weakly_connected_without_trap, digraphs=0)
+    in_step = holding(_weakly_connected_and_robust, digraphs=0)
+    if with_delays.counterexample is not None or in_step.counterexample is None:
+        return Outcome("fails", with_delays.how, with_delays.note or "no such graph", with_delays.counterexample)
+    note = (
+        "of algorithms that find out who lies. MSR rules in step need less: "
+        f"{in_step.note}. With delays they need it: all graphs without a trap are (2f+1)-connected"
+    )
+    return Outcome("holds corrected", with_delays.how, note, in_step.counterexample)
+
+
+def _weakly_connected_and_robust(graph: Digraph) -> str | None:
+    """A graph, not complete, that survives one liar in step although it is not 3-connected."""
+    complete_ = graph.arc_count == graph.n * (graph.n - 1)
+    if complete_ or graph.n < 4 or not robust(graph, 2, 2) or smallest_separation(graph, 3) is None:
+        return None
+    return f"(2,2)-robust, so f = 1 is survived in step, on {graph.n} nodes, and not 3-connected"
+
+
 def _connected_and_trapped(graph: Digraph) -> str | None:
     if graph.directed or graph.n < 4 or smallest_separation(graph, 3) is not None or not trapped(graph, 1):
         return None
@@ -209,7 +230,7 @@ CLAIMS: tuple[Claim, ...] = (
     Claim(
         "Introduction",
         "f malicious vehicles need (2f+1)-connectivity (said of other algorithms)",
-        lambda: sharper("holds", _weakly_connected_without_trap, "graphs without a trap have it", digraphs=0),
+        _connectivity,
     ),
     Claim(
         "Introduction",

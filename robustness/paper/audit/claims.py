@@ -73,7 +73,8 @@ class Outcome:
     Attributes
     ----------
     result : str
-        ``"holds"``, ``"fails"``, ``"holds corrected"``, ``"open"``, ``"contradicts itself"`` or ``"not checkable"``.
+        ``"holds"``, ``"fails"``, ``"holds corrected"``, ``"answered"``, ``"contradicts itself"`` or ``"not
+        checkable"``.
     how : str
         What was tried.
     note : str

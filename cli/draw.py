@@ -1,0 +1,112 @@
+"""``robustness draw``: a picture of a network, with the sets that a question about it turns up."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from cli.exit_codes import ExitCode
+from cli.options import (
+    algorithm_option,
+    graph_argument,
+    jobs_option,
+    load_graph,
+    seed_option,
+    talk_options,
+    timeout_option,
+)
+from cli.output import Console, ProgressLine, pass_console
+
+if TYPE_CHECKING:
+    from robustness.digraph import Digraph
+
+__all__ = ["command"]
+
+
+@click.command("draw")
+@graph_argument
+@click.option("-r", "r", type=click.IntRange(min=0), help="Decide R-robustness, and mark the two sets that refute it.")
+@click.option("-s", "s", type=click.IntRange(min=1), help="With -r: (R,S)-robustness.  [default: 1]")
+@click.option(
+    "--attack",
+    "attack_file",
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="FILE",
+    help="Mark the attack that 'attack -o' wrote.",
+)
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="FILE",
+    help="The picture: .svg, .png or .pdf.",
+)
+@algorithm_option
+@timeout_option
+@jobs_option
+@seed_option
+@talk_options
+@pass_console
+@click.pass_context
+def command(
+    ctx: click.Context,
+    console: Console,
+    source: str,
+    r: int | None,
+    s: int | None,
+    attack_file: Path | None,
+    output: Path,
+    algorithm: str,
+    timeout: float | None,
+    jobs: int,
+    seed: int,
+) -> None:
+    """Draw GRAPH: nodes where the file places them, or S1 left and S2 right; arcs that count are drawn strong.
+
+    Without -r and --attack only the network is drawn. Exit code 0 when the picture is written; with -r 30 when a limit
+    came before the decision, and then no set is marked.
+    """
+    from robustness.figures.network import draw_to_file
+    from robustness.figures.positions import positions_of_file
+    from robustness.figures.saving import picture_format
+    from robustness.files.writing import require_different_files
+
+    if r is not None and attack_file is not None:
+        raise click.UsageError("give one of -r and --attack.")
+    if s is not None and r is None:
+        raise click.UsageError("-s belongs to -r.")
+    require_different_files([source, attack_file], [output])
+    picture_format(output)  # before the work that it might be lost for
+    graph = load_graph(source)
+    answer: Any = None
+    undecided = False
+    if r is not None:
+        from robustness.decision.front import check_rs_robustness
+        from robustness.results import Verdict
+
+        with ProgressLine(console) as line:
+            answer = check_rs_robustness(
+                graph, r, s or 1, algorithm=algorithm, time_limit=timeout, jobs=jobs, seed=seed, progress=line
+            )
+        console.result(answer.summary())
+        undecided = answer.verdict is Verdict.UNDECIDED
+    elif attack_file is not None:
+        answer = _attack(graph, attack_file)
+    draw_to_file(graph, answer, output, pos=positions_of_file(source, graph))
+    console.talk(f"wrote {output}")
+    ctx.exit(ExitCode.UNDECIDED if undecided else ExitCode.DONE)
+
+
+def _attack(graph: Digraph, path: Path) -> Any:
+    """Return the attack in a file, its evidence checked anew."""
+    from robustness.errors import InvalidParameter, UnreadableTopology
+    from robustness.simulation.attacks import Attack
+
+    try:
+        return Attack.from_dict(graph, json.loads(path.read_text(encoding="utf-8")))
+    except (OSError, ValueError, RecursionError, InvalidParameter) as problem:
+        raise UnreadableTopology(f"{path}: not an attack of this graph as 'attack -o' writes it: {problem}") from None

@@ -1,0 +1,100 @@
+"""A run as a short film: vehicles as dots on their lanes, coloured by where they end, and what the liars claim."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from robustness.errors import InvalidParameter, MissingExtra
+from robustness.figures.saving import new_figure
+from robustness.figures.simulation import GROUP_COLORS, Run, recorded, run_title
+from robustness.figures.words import plain
+from robustness.files import replace_file
+
+__all__ = ["animate"]
+
+#: Frames of a film, and frames a second.
+_FRAMES, _RATE = 90, 12
+
+
+def animate(run: Run, path: str | os.PathLike[str]) -> None:
+    """Write a recorded run as an animation: ``.gif``, or ``.html`` with play and pause, in one file without a network.
+
+    Across: the position relative to the moving target. Up: one lane per vehicle. A liar is a cross at what it claims.
+
+    Raises
+    ------
+    MissingExtra
+        When matplotlib is not installed.
+    InvalidParameter
+        When the run was not recorded, or the suffix is neither.
+    """
+    suffix = os.path.splitext(os.fspath(path))[1].lower()
+    if suffix not in (".gif", ".html"):
+        raise InvalidParameter(f"an animation's suffix is .gif or .html, not {suffix!r}")
+    states = recorded(run)
+    try:
+        from matplotlib.animation import FuncAnimation, PillowWriter
+    except ImportError:
+        raise MissingExtra("drawing needs matplotlib: pip install 'graph-robustness[plot]'") from None
+    labels, end = run.scenario.network.union.labels, len(states.p) - 1
+    if run.outcome.diverged_at is not None:
+        end = min(end, run.outcome.diverged_at)
+    steps = np.unique(np.linspace(0, _last_of_interest(run, end), _FRAMES).round().astype(int))
+    numbered = enumerate(group for _, group in run.outcome.groups)
+    colors = {label: GROUP_COLORS[k % len(GROUP_COLORS)] for k, group in numbered for label in group}
+    normal = [i for i, label in enumerate(labels) if label not in run.start.malicious]
+    bad = [i for i, label in enumerate(labels) if label in run.start.malicious]
+    figure = new_figure(7.0, 1.4 + min(0.32 * len(labels), 6.0))
+    axes = figure.subplots()
+    shown = states.p[: end + 1, normal] if normal else states.p[: end + 1]
+    low, high = float(shown.min()), float(shown.max())
+    margin = 0.1 * (high - low) or 1.0
+    axes.set_xlim(low - margin, high + margin)
+    axes.set_ylim(-0.8, len(labels) - 0.2)
+    axes.set_yticks(range(len(labels)), [plain(label) for label in labels], fontsize=max(4, 9 - len(labels) // 12))
+    axes.set_xlabel("position relative to the moving target")
+    axes.set_title(run_title(run), fontsize=10, loc="left")
+    axes.grid(axis="y", alpha=0.3)
+    dots = axes.scatter(states.p[0, normal], normal, c=[colors[labels[i]] for i in normal], s=46, zorder=3)
+    crosses = axes.scatter(states.sent[0, bad], bad, marker="x", c="#d55e00", s=60, zorder=3)
+    clock = axes.text(0.99, 0.02, "", transform=axes.transAxes, ha="right", va="bottom", fontsize=9)
+
+    def show(step: int) -> list[Any]:
+        dots.set_offsets(np.column_stack([states.p[step, normal], normal]))
+        if bad:
+            claims = np.clip(states.sent[step, bad], low - margin, high + margin)
+            crosses.set_offsets(np.column_stack([claims, bad]))
+        clock.set_text(f"step {step}")
+        return [dots, crosses, clock]
+
+    film = FuncAnimation(figure, show, frames=steps.tolist(), interval=1000 / _RATE, blit=False)
+    with tempfile.TemporaryDirectory() as folder:
+        made = Path(folder) / f"film{suffix}"
+        if suffix == ".gif":
+            film.save(made, writer=PillowWriter(fps=_RATE), dpi=80)
+        else:
+            made.write_text(_page(film, run), encoding="utf-8")
+        replace_file(path, made.read_bytes())
+
+
+def _last_of_interest(run: Run, end: int) -> int:
+    """Return where the film ends: a little after agreement, or where the run does; a split is short."""
+    if run.outcome.since is not None:
+        return max(1, min(end, 2 * run.outcome.since + 5))
+    return max(1, min(end, 200 if run.outcome.exact else end))
+
+
+def _page(film: Any, run: Run) -> str:
+    import html
+
+    from matplotlib import rc_context
+
+    with rc_context({"animation.embed_limit": 60.0, "savefig.dpi": 80}):
+        player = film.to_jshtml(fps=_RATE, default_mode="once")
+    title = html.escape(run_title(run))
+    return f"<!DOCTYPE html>\n<html lang='en'>\n<meta charset='utf-8'>\n<title>{title}</title>\n{player}\n</html>\n"

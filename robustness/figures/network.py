@@ -1,0 +1,232 @@
+"""Robustness seen: a network with the two sets that do not listen, who lies, and the arcs that count."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal
+
+import networkx as nx
+import numpy as np
+
+from robustness.digraph import Digraph, GraphLike, as_digraph
+from robustness.errors import MissingExtra
+from robustness.figures.layout import Positions, positions_for, positions_in
+from robustness.figures.marking import Marks, marks_of
+from robustness.figures.saving import new_figure, save_figure
+from robustness.figures.words import plain
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["draw", "draw_to_file"]
+
+#: Colour and shape of every set: told apart without colour as well (Okabe and Ito's palette).
+_STYLES: Mapping[str, tuple[str, str]] = {
+    "S1": ("#56b4e9", "o"),
+    "S2": ("#e69f00", "s"),
+    "M": ("#d55e00", "D"),
+    "rest": ("#d9d9d9", "o"),
+}
+
+_SILENCED, _ADDED, _PLAIN = "#d55e00", "#009e73", "#b8b8b8"
+
+
+def draw(
+    G: GraphLike,
+    result_or_attack: Any = None,
+    *,
+    pos: Mapping[Hashable, Sequence[float]] | None = None,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw a network, and what an answer says about it.
+
+    Parameters
+    ----------
+    G : networkx Graph or DiGraph, or Digraph
+        An arc ``(u, v)`` means v hears u.
+    result_or_attack : optional
+        What to mark: the answer to a question about G (``check_rs_robustness``, ``determine_robustness``,
+        ``tolerance``, a joint result, a trap, an attack, an outcome, a mended network), or the sets themselves,
+        ``(S1, S2)`` or ``(M, S1, S2)``. S1 and S2 are coloured, the malicious nodes M are red diamonds, and arcs into
+        S1 or S2 from outside, the ones that the definition counts, are drawn strong.
+    pos : mapping from nodes to pairs of numbers, optional
+        Where the nodes stand; by default where the graph's node attributes say (``pos``, ``x`` and ``y``, longitude and
+        latitude, as files of yEd, Gephi and topology collections have them), else S1 left and S2 right, or a layout.
+    ax : matplotlib axes, optional
+        Where to draw; by default on a new figure.
+
+    Returns
+    -------
+    matplotlib axes
+
+    Raises
+    ------
+    MissingExtra
+        When matplotlib is not installed.
+    InvalidGraph, InvalidParameter
+        When G is no graph of the definitions, or the answer marks nothing in it.
+
+    Notes
+    -----
+    Linear in the arcs, once nodes have places.
+    """
+    graph = as_digraph(G)
+    marks = marks_of(graph, result_or_attack)
+    places = positions_for(graph, marks, pos, positions_in(G))
+    if ax is None:
+        try:
+            from matplotlib import pyplot as plt
+        except ImportError:
+            raise MissingExtra("drawing needs matplotlib: pip install 'graph-robustness[plot]'") from None
+        ax = plt.subplots(figsize=_size(graph), layout="constrained")[1]
+    _draw_on(ax, graph, marks, places)
+    if pos is None and positions_in(G) is None:
+        ax.set_aspect("equal")  # circles of ours stay circles; maps and users' places fill the picture
+    return ax
+
+
+def draw_to_file(
+    G: GraphLike,
+    result_or_attack: Any,
+    path: str | os.PathLike[str],
+    *,
+    pos: Mapping[Hashable, Sequence[float]] | None = None,
+) -> None:
+    """Draw as :func:`draw` does, to a file in the format of its suffix; the same picture gives the same bytes."""
+    graph = as_digraph(G)
+    figure = new_figure(*_size(graph))
+    draw(G, result_or_attack, pos=pos, ax=figure.subplots())
+    save_figure(figure, path)
+
+
+def _size(graph: Digraph) -> tuple[float, float]:
+    side = min(5.0 + graph.n / 15, 12.0)
+    return side * 1.35, side
+
+
+def _draw_on(axes: Axes, graph: Digraph, marks: Marks, places: Positions) -> None:
+    """Draw arcs first, then nodes, then names, then what everything means."""
+    picture = nx.DiGraph()
+    picture.add_nodes_from(range(graph.n))
+    picture.add_edges_from(graph.arcs())
+    size = _node_size(places, _size(graph)[1])
+    _draw_arcs(axes, picture, graph, marks, places, size)
+    handles = [_draw_group(axes, picture, name, group, places, size) for name, group in _groups(graph, marks)]
+    names = {i: plain(label) for i, label in enumerate(graph.labels)}
+    longest = max(map(len, names.values()), default=1)
+    font = max(5.0, min(11.0, 11.0 * (size / 620) ** 0.5)) * (1.0 if longest <= 3 else 0.8)
+    lifted = places if longest <= 3 else _below(places, graph.n)
+    nx.draw_networkx_labels(picture, lifted, names, font_size=font, ax=axes, clip_on=False)
+    if marks.title:
+        axes.set_title(plain(marks.title), fontsize=11, wrap=True)
+    axes.set_axis_off()
+    axes.margins(0.12)
+    _legend(axes, [*(handle for handle in handles if handle is not None), *_arc_handles(marks)])
+
+
+def _node_size(places: Positions, side: float) -> float:
+    """Return the area of a node in square points: what the places leave room for on a picture of so many inches."""
+    largest, least = 620.0, 70.0
+    if len(places) < 2:
+        return largest
+    points = np.array([places[i] for i in sorted(places)])
+    extent = np.ptp(points, axis=0).max() or 1.0
+    near = np.sort(np.hypot(*(points[:, None] - points[None]).T), axis=0)[1]
+    # Most nodes get room; where a few lie nearly on top of each other, nothing helps.
+    room = float(np.quantile(near, 0.3)) / extent * side * 72 * 0.8
+    return float(min(largest, max(least, (0.8 * room) ** 2)))
+
+
+def _groups(graph: Digraph, marks: Marks) -> list[tuple[str, frozenset[int]]]:
+    rest = frozenset(range(graph.n)) - marks.S1 - marks.S2 - marks.M
+    return [("S1", marks.S1 - marks.M), ("S2", marks.S2 - marks.M), ("M", marks.M), ("rest", rest)]
+
+
+def _draw_group(
+    axes: Axes, picture: nx.DiGraph, name: str, group: frozenset[int], places: Positions, size: float
+) -> Any:
+    """Draw one set of nodes; its return value is what the legend shows. An empty set has none."""
+    if not group:
+        return None
+    color, shape = _STYLES[name]
+    drawn = nx.draw_networkx_nodes(
+        picture, places, nodelist=sorted(group), node_color=color, node_shape=shape, node_size=size,
+        edgecolors="#404040", linewidths=0.8, ax=axes,
+    )  # fmt: skip
+    count = f"{len(group)} node{'s' * (len(group) != 1)}"
+    drawn.set_label({"M": f"M, malicious: {count}", "rest": f"other nodes: {len(group)}"}.get(name, f"{name}: {count}"))
+    return drawn
+
+
+def _draw_arcs(
+    axes: Axes, picture: nx.DiGraph, graph: Digraph, marks: Marks, places: Positions, size: float
+) -> None:
+    """Draw what does not count first and faint, as lines where a link goes both ways; then what does, as arrows."""
+    strong = marks.counted | marks.silenced | marks.added | marks.dropped
+    faint = [arc for arc in picture.edges if arc not in strong]
+    both = [(u, v) for u, v in faint if picture.has_edge(v, u) and (u < v or (v, u) in strong)]
+    single = [(u, v) for u, v in faint if not picture.has_edge(v, u)]
+    width = 1.0 if graph.arc_count <= 400 else 0.4
+    bend = "arc3,rad=0.06"
+    nx.draw_networkx_edges(
+        picture, places, [arc for arc in both if (arc[1], arc[0]) not in strong], edge_color=_PLAIN, width=width,
+        arrows=False, ax=axes,
+    )  # fmt: skip
+    shapes = (
+        (single, _PLAIN, width, "solid"),
+        ([arc for arc in marks.silenced if arc[1] in marks.S1 | marks.S2], _SILENCED, 1.4, "dotted"),
+        ([arc for arc in marks.counted if arc[1] in marks.S1], "#0072b2", 2.2, "solid"),
+        ([arc for arc in marks.counted if arc[1] not in marks.S1], "#b36b00", 2.2, "solid"),
+        (_one_way(marks.added), _ADDED, 2.6, "solid"),
+        (_one_way(marks.dropped), _SILENCED, 1.4, "dashed"),
+    )
+    for arcs, color, thick, style in shapes:
+        if arcs:
+            shape = picture.copy()
+            shape.add_edges_from(arcs)
+            nx.draw_networkx_edges(
+                shape, places, sorted(arcs), edge_color=color, width=thick, style=style, node_size=size, arrows=True,
+                arrowsize=11, connectionstyle=bend, ax=axes,
+            )  # fmt: skip
+
+
+def _one_way(arcs: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Return links that go both ways once."""
+    known = set(arcs)
+    return sorted((u, v) for u, v in known if u < v or (v, u) not in known)
+
+
+def _arc_handles(marks: Marks) -> list[Any]:
+    """Return what the legend shows for arcs."""
+    from matplotlib.lines import Line2D
+
+    rows: tuple[tuple[Any, str, Literal["-", ":", "--"], str], ...] = (
+        ([arc for arc in marks.counted if arc[1] in marks.S1], "#0072b2", "-", "into S1 from outside"),
+        ([arc for arc in marks.counted if arc[1] not in marks.S1], "#b36b00", "-", "into S2 from outside"),
+        (marks.silenced, _SILENCED, ":", "from M: shows each side its own value"),
+        (marks.added, _ADDED, "-", "link added"),
+        (marks.dropped, _SILENCED, "--", "link dropped"),
+    )
+    return [Line2D([], [], color=color, ls=style, lw=2, label=text) for arcs, color, style, text in rows if arcs]
+
+
+def _below(places: Positions, n: int) -> Positions:
+    """Return places for names that do not fit onto their nodes: a little below."""
+    ups = [up for _, up in places.values()]
+    step = 0.055 * ((max(ups) - min(ups)) or 1.0) * min(1.0, (12 / max(n, 1)) ** 0.45)
+    return {i: (across, up - step) for i, (across, up) in places.items()}
+
+
+def _legend(axes: Axes, handles: list[Any]) -> None:
+    """Put what everything means beside the picture, where it covers nothing."""
+    from matplotlib.collections import PathCollection
+
+    if len(handles) > 1:
+        drawn = axes.legend(
+            handles=handles, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, fontsize="small",
+            labelspacing=0.9,
+        )  # fmt: skip
+        for handle in drawn.legend_handles:
+            if isinstance(handle, PathCollection):
+                handle.set_sizes([110])

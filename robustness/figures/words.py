@@ -1,0 +1,30 @@
+"""Node labels in pictures: short, in natural order, and never read as formulas."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from robustness.natural_order import in_natural_order
+
+__all__ = ["nodes_in_words", "plain"]
+
+
+def plain(text: object) -> str:
+    """Return text that matplotlib shows as it is: a dollar sign opens no formula, control characters are spelt out.
+
+    >>> plain("$x_1$")
+    '\\\\$x_1\\\\$'
+    """
+    shown = "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in str(text))
+    return shown.replace("$", r"\$")
+
+
+def nodes_in_words(labels: Iterable[object], most: int = 8) -> str:
+    """Return a node set as text, at most so many labels of it, in natural order.
+
+    >>> nodes_in_words(["n10", "n2"]), nodes_in_words(range(20), 3)
+    ('{n2, n10}', '{0, 1, 2, … 17 more}')
+    """
+    ordered = in_natural_order(labels)
+    more = f", … {len(ordered) - most} more" if len(ordered) > most else ""
+    return "{" + ", ".join(plain(label) for label in ordered[:most]) + more + "}"

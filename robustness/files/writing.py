@@ -1,0 +1,97 @@
+"""Writing files whole or not at all, and only where a file may be written."""
+
+from __future__ import annotations
+
+import os
+import stat
+import tempfile
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+
+from robustness.errors import InvalidParameter
+
+__all__ = ["replace_file", "require_different_files"]
+
+
+def replace_file(path: str | os.PathLike[str], data: bytes) -> None:
+    """Write ``data`` to ``path`` whole or not at all.
+
+    A regular file, or none yet: the bytes go to a new file in the same folder, reach the disk, and take the place of
+    ``path``. A symbolic link stays, and the file that it leads to is replaced. A device, a pipe or a socket is written
+    into and never replaced.
+
+    Raises
+    ------
+    OSError
+        Naming ``path``, when it cannot be written; it is then as it was.
+    """
+    target = Path(os.path.realpath(path))
+    try:
+        if _is_special(target):
+            with open(target, "wb") as stream:
+                stream.write(data)
+        else:
+            _replace(target, data)
+    except OSError as problem:  # which may name the temporary file
+        raise OSError(problem.errno, problem.strerror or str(problem), str(path)) from None
+
+
+def require_different_files(
+    inputs: Iterable[str | os.PathLike[str] | None], outputs: Iterable[str | os.PathLike[str] | None]
+) -> None:
+    """Guarantees that no output is an input or another output, before any work is done; None names no file.
+
+    Raises
+    ------
+    InvalidParameter
+        When two of them are one file, by whatever names. Devices and pipes may be named twice.
+    """
+    seen: dict[str, str] = {}
+    for path in inputs:
+        if path is not None:
+            seen[os.path.realpath(path)] = f"the input {os.fspath(path)}"
+    for path in outputs:
+        if path is None:
+            continue
+        real = os.path.realpath(path)
+        if real in seen and not _is_special(Path(real)):
+            raise InvalidParameter(
+                f"the output {os.fspath(path)} is the same file as {seen[real]}: name another file"
+            )
+        seen[real] = f"the output {os.fspath(path)}"
+
+
+def _is_special(target: Path) -> bool:
+    """Return whether there is something at ``target`` that is neither a regular file nor a folder."""
+    try:
+        mode = os.stat(target).st_mode
+    except OSError:
+        return False
+    return not stat.S_ISREG(mode) and not stat.S_ISDIR(mode)
+
+
+def _replace(target: Path, data: bytes) -> None:
+    if target.is_dir():
+        raise IsADirectoryError(21, "Is a directory")
+    handle, temporary = tempfile.mkstemp(prefix=f".{target.name[:64]}.", dir=target.parent)
+    try:
+        with open(handle, "wb") as stream:
+            stream.write(data)
+            os.fchmod(stream.fileno(), _permissions(target))
+            stream.flush()
+            os.fsync(stream.fileno())
+        os.replace(temporary, target)
+    except BaseException:
+        with suppress(OSError):
+            os.unlink(temporary)
+        raise
+
+
+def _permissions(target: Path) -> int:
+    """Return the permissions of the file that is replaced, or those that a new file would get."""
+    with suppress(OSError):
+        return stat.S_IMODE(os.stat(target).st_mode)
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask

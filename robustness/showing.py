@@ -1,0 +1,163 @@
+"""What every answer has in common when it is shown: one line as text, a picture, and a page of evidence in notebooks.
+
+An answer says what it is about by a few methods; drawing itself is imported when something is drawn.
+"""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from robustness.digraph import GraphLike, as_digraph
+from robustness.errors import InvalidParameter, MissingExtra
+from robustness.natural_order import in_natural_order
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["Shown", "ShownOverTime", "labels_in_words"]
+
+#: Larger networks are not drawn in notebooks unless asked for: a picture of them says little and takes long.
+_LARGEST = 80
+
+_LEFT = "style='text-align:left'"
+
+
+def labels_in_words(labels: Iterable[object]) -> str:
+    """Return a node set as text, in natural order.
+
+    >>> labels_in_words({"n10", "n2"})
+    "{'n2', 'n10'}"
+    """
+    return "{" + ", ".join(map(repr, in_natural_order(labels))) + "}"
+
+
+class Shown:
+    """An answer that can be printed, drawn, and looked at in a notebook.
+
+    Subclasses have ``summary()``, and may have ``pictured()`` and ``evidence()``.
+    """
+
+    __slots__ = ()
+
+    if TYPE_CHECKING:
+
+        def summary(self) -> str:
+            """Return the answer in plain words."""
+
+    def __str__(self) -> str:
+        return self.summary()
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {' '.join(self.summary().split())}>"
+
+    def pictured(self) -> GraphLike | None:
+        """Return the graph that the answer is about, or None when it does not carry one."""
+        return getattr(self, "graph", None)
+
+    def evidence(self) -> Iterable[tuple[str, str]]:
+        """Return the evidence as rows of a name and a text."""
+        return ()
+
+    def plot(
+        self,
+        G: GraphLike | None = None,
+        *,
+        pos: Mapping[Hashable, Sequence[float]] | None = None,
+        ax: Axes | None = None,
+    ) -> Axes:
+        """Draw the graph with what the answer says about it, and return the axes.
+
+        Parameters
+        ----------
+        G : graph, optional
+            The graph to draw, with its node attributes; by default the one that the answer carries.
+        pos, ax
+            As for :func:`robustness.draw`.
+
+        Raises
+        ------
+        InvalidParameter
+            When neither is there.
+        MissingExtra
+            When matplotlib is not installed.
+        """
+        from robustness.figures.network import draw
+
+        graph = self.pictured() if G is None else G
+        if graph is None:
+            raise InvalidParameter("this answer carries no graph: pass the one it is about, plot(G)")
+        return draw(graph, self, pos=pos, ax=ax)
+
+    def _small_picture(self) -> str:
+        """Return a small picture as HTML; empty where there is nothing to draw, or nothing to draw with."""
+        from robustness.figures.saving import new_figure
+
+        graph = self.pictured()
+        if graph is None or not 1 <= as_digraph(graph).n <= _LARGEST:
+            return ""
+        try:
+            figure = new_figure(6.4, 3.6)
+        except MissingExtra:
+            return ""
+        try:
+            self.plot(ax=figure.subplots()).set_title("")
+        except InvalidParameter:  # a run that was not recorded
+            return ""
+        return _as_image(figure)
+
+    def _repr_html_(self) -> str:
+        """Render in notebooks: the summary, a small picture, and the evidence to unfold."""
+        rows = "".join(
+            f"<tr><th {_LEFT}>{html.escape(name)}</th><td {_LEFT}>{html.escape(text)}</td></tr>"
+            for name, text in self.evidence()
+        )
+        folded = f"<details><summary>evidence</summary><table>{rows}</table></details>" if rows else ""
+        return f"<div><p>{html.escape(self.summary())}</p>{self._small_picture()}{folded}</div>"
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
+        return {"text/plain": repr(self), "text/html": self._repr_html_()}
+
+
+class ShownOverTime(Shown):
+    """A run, which is drawn against time."""
+
+    __slots__ = ()
+
+    def plot(
+        self,
+        G: GraphLike | None = None,
+        *,
+        pos: Mapping[Hashable, Sequence[float]] | None = None,
+        ax: Axes | None = None,
+    ) -> Axes:
+        """Draw the run against time, vehicles coloured by the group they end in, and return the axes.
+
+        Parameters
+        ----------
+        G, pos
+            As for other answers: with a graph given, the graph is drawn instead, with the groups that were watched.
+        ax : matplotlib axes, optional
+
+        Raises
+        ------
+        InvalidParameter
+            When the run was not recorded.
+        MissingExtra
+            When matplotlib is not installed.
+        """
+        if G is not None:
+            return super().plot(G, pos=pos, ax=ax)
+        from robustness.figures.simulation import draw_outcome
+
+        return draw_outcome(self, ax)
+
+
+def _as_image(figure: Any) -> str:
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=80)
+    data = base64.b64encode(stream.getvalue()).decode("ascii")
+    return f"<img alt='' src='data:image/png;base64,{data}'/>"

@@ -1,0 +1,264 @@
+"""Pictures of networks: what is marked, where nodes stand, and that no answer and no label breaks them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import networkx as nx
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from matplotlib.figure import Figure
+
+import robustness as rb
+from cli.main import robustness
+from robustness.digraph import as_digraph
+from robustness.errors import InvalidParameter
+from robustness.figures.layout import positions_in
+from robustness.figures.marking import marks_of
+from robustness.figures.network import draw_to_file
+from robustness.figures.positions import positions_of_file
+from robustness.simulation import find_attack
+from robustness.traps import find_trap
+
+mpl.use("agg")
+
+PETERSEN, WHEEL = nx.petersen_graph(), nx.wheel_graph(5)
+
+
+def axes() -> Any:
+    return Figure(layout="constrained").subplots()
+
+
+class TestMarks:
+    def test_a_violating_pair(self) -> None:
+        graph = as_digraph(PETERSEN)
+        result = rb.check_rs_robustness(PETERSEN, 2)
+        marks = marks_of(graph, result)
+        assert result.witness is not None
+        assert (graph.labels_of(marks.S1), graph.labels_of(marks.S2)) == tuple(result.witness)
+        for i in range(10):
+            side = next(group for group in (marks.S1, marks.S2) if i in group)
+            assert sum(arc[1] == i for arc in marks.counted) == len(set(PETERSEN[i]) - side) < 2
+        assert marks.title == "not (2,1)-robust"
+        assert marks_of(graph, tuple(result.witness)).counted == marks.counted
+
+    def test_a_trap_and_its_attack(self) -> None:
+        graph = as_digraph(WHEEL)
+        attack = find_attack(WHEEL, 1, "delayed").attack
+        found = find_trap(WHEEL, 1)
+        for answer in (attack, found, (found.M, found.S1, found.S2), {"M": [0], "S1": found.S1, "S2": found.S2}):
+            marks = marks_of(graph, answer)
+            assert marks.M == {0}
+            assert {u for u, _ in marks.silenced} == {0}
+            assert len(marks.silenced) == 4
+            for i in marks.S1 | marks.S2:
+                assert sum(arc[1] == i for arc in marks.counted) <= 1
+
+    def test_liars_of_a_violation_are_members_of_the_sides(self) -> None:
+        ring = nx.cycle_graph(6)
+        attack = find_attack(ring, 1, "malicious").attack
+        assert attack is not None
+        marks = marks_of(as_digraph(ring), attack)
+        assert marks.M <= marks.S1 | marks.S2
+        assert not marks.silenced
+
+    def test_what_marks_nothing_and_what_is_no_answer(self) -> None:
+        graph = as_digraph(nx.complete_graph(5))
+        assert not marks_of(graph, rb.check_rs_robustness(nx.complete_graph(5), 2)).S1
+        assert marks_of(graph, None).title == ""
+        for wrong in ("S1", 3, ({0}, {1}, {2}, {3}), ({0}, "x")):
+            with pytest.raises(InvalidParameter, match="a picture marks"):
+                marks_of(graph, wrong)
+        with pytest.raises(rb.RobustnessError):
+            marks_of(graph, ({0}, {17}))
+
+    def test_links_added_and_dropped(self) -> None:
+        class Mended:
+            links = ((0, 2),)
+            dropped = ((0, 1),)
+
+        marks = marks_of(as_digraph(nx.cycle_graph(4)), Mended())
+        assert marks.added == {(0, 2), (2, 0)}
+        assert marks.dropped == {(0, 1), (1, 0)}
+
+
+class TestDraw:
+    def test_every_answer_is_drawn_and_returns_its_axes(self) -> None:
+        sequence = rb.TimeVaryingGraph([nx.path_graph(4), nx.cycle_graph(4)], period=2)
+        answers = [
+            (PETERSEN, rb.check_rs_robustness(PETERSEN, 2)), (PETERSEN, rb.determine_robustness(PETERSEN)),
+            (WHEEL, rb.tolerance(WHEEL, model="delayed")), (WHEEL, find_attack(WHEEL, 1, "byzantine").attack),
+            (WHEEL, find_trap(WHEEL, 1)), (WHEEL, None), (nx.empty_graph(1), None), (nx.empty_graph(0), None),
+            (nx.empty_graph(2), None), (sequence.union(0, 2), rb.check_joint_robustness(sequence, 3)),
+        ]  # fmt: skip
+        for graph, answer in answers:
+            ax = axes()
+            assert rb.draw(graph, answer, ax=ax) is ax
+
+    def test_answers_draw_themselves(self) -> None:
+        for answer in (
+            rb.check_rs_robustness(PETERSEN, 2), rb.determine_robustness(PETERSEN), rb.tolerance(WHEEL),
+            rb.tolerance(WHEEL, model="delayed"), find_attack(WHEEL, 1, "delayed").attack,
+            rb.check_joint_robustness(rb.TimeVaryingGraph([nx.path_graph(4)], period=1), 2),
+            rb.check_rs_robustness(nx.complete_graph(3), 2),
+        ):  # fmt: skip
+            ax = axes()
+            assert answer.plot(ax=ax) is ax
+        with pytest.raises(InvalidParameter, match="carries no graph"):
+            find_trap(WHEEL, 1).plot()
+        assert find_trap(WHEEL, 1).plot(WHEEL, ax=axes()) is not None
+
+    def test_the_legend_names_what_is_there_and_covers_no_node(self, tmp_path: Path) -> None:
+        figure = Figure(figsize=(8, 6), layout="constrained")
+        ax = rb.draw(WHEEL, find_attack(WHEEL, 1, "delayed").attack, ax=figure.subplots())
+        legend = ax.get_legend()
+        told = [text.get_text() for text in legend.get_texts()]
+        assert told[:3] == ["S1: 2 nodes", "S2: 2 nodes", "M, malicious: 1 node"]
+        figure.savefig(tmp_path / "x.png")
+        box, plot = legend.get_window_extent(), ax.get_window_extent()
+        assert box.x0 >= plot.x1 - 1
+        assert box.x1 <= figure.bbox.x1 + 1
+
+    @pytest.mark.parametrize("label", ["$x_1$", "$", r"\frac", "a\nb", "<b>&", "ü€", "x" * 60])
+    def test_labels_are_data(self, label: str, tmp_path: Path) -> None:
+        graph = nx.relabel_nodes(WHEEL, {0: label})
+        for suffix in ("svg", "png", "pdf"):
+            draw_to_file(graph, find_attack(graph, 1, "delayed").attack, tmp_path / f"x.{suffix}")
+
+    def test_the_same_picture_is_the_same_bytes(self, tmp_path: Path) -> None:
+        result = rb.check_rs_robustness(PETERSEN, 2)
+        for name in ("a.svg", "b.svg"):
+            draw_to_file(PETERSEN, result, tmp_path / name)
+        assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
+
+
+class TestPlaces:
+    @pytest.mark.parametrize(
+        "attributes",
+        [
+            {"pos": (1, 2)}, {"x": "1", "y": 2.0}, {"lon": 1, "lat": 2}, {"Longitude": 1.0, "Latitude": 2.0},
+            {"viz": {"position": {"x": 1, "y": 2, "z": 0}}}, {"graphics": {"x": 1, "y": 2, "w": 30}},
+        ],
+    )  # fmt: skip
+    def test_attributes_of_every_kind(self, attributes: dict[str, Any]) -> None:
+        graph = nx.path_graph(2)
+        graph.nodes[0].update(attributes)
+        assert positions_in(graph) is None
+        graph.nodes[1].update({"x": 5, "y": 5})
+        assert positions_in(graph) == {0: (1.0, 2.0), 1: (5.0, 5.0)}
+
+    @pytest.mark.parametrize(
+        "attributes", [{"x": "left", "y": 1}, {"pos": "ab"}, {"x": float("nan"), "y": 0}, {"x": 1}]
+    )
+    def test_what_is_no_place(self, attributes: dict[str, Any]) -> None:
+        graph = nx.path_graph(2)
+        for node in graph:
+            graph.nodes[node].update(attributes)
+        assert positions_in(graph) is None
+
+    def test_given_places_win_and_are_checked(self) -> None:
+        ax = rb.draw(WHEEL, pos={i: (i, i * i) for i in range(5)}, ax=axes())
+        groups = [np.asarray(group.get_offsets()) for group in ax.collections]
+        offsets = np.concatenate([group for group in groups if len(group)])
+        assert {tuple(row) for row in offsets.tolist()} >= {(2.0, 4.0), (4.0, 16.0)}
+        for wrong in ({0: (0, 0)}, dict.fromkeys(range(5), (0, 0, 0)), dict.fromkeys(range(5), (0, float("inf")))):
+            with pytest.raises(InvalidParameter, match="position"):
+                rb.draw(WHEEL, pos=wrong, ax=axes())
+
+    def test_sides_stand_apart(self) -> None:
+        result = rb.check_rs_robustness(PETERSEN, 2)
+        figure = Figure()
+        ax = rb.draw(PETERSEN, result, ax=figure.subplots())
+        sides = [np.asarray(group.get_offsets()) for group in ax.collections if group.get_label().startswith("S")]
+        assert len(sides) == 2
+        assert sides[0][:, 0].max() < sides[1][:, 0].min()
+
+    @pytest.mark.filterwarnings("ignore::robustness.GraphWarning")
+    @pytest.mark.parametrize("suffix", ["json", "graphml", "gexf", "gml"])
+    def test_of_files(self, suffix: str, tmp_path: Path) -> None:
+        graph, path = nx.path_graph(3), tmp_path / f"g.{suffix}"
+        for node in graph:
+            graph.nodes[node].update(x=float(node), y=1.0 + node)
+        if suffix == "json":
+            path.write_text(json.dumps(nx.node_link_data(graph, edges="edges")), encoding="utf-8")
+        else:
+            getattr(nx, f"write_{suffix}")(graph, path)
+        read = rb.read_topology(path)
+        places = positions_of_file(path, read)
+        assert places is not None
+        assert [places[label] for label in read.labels] == [(0.0, 1.0), (1.0, 2.0), (2.0, 3.0)]
+
+    def test_of_a_collection(self) -> None:
+        places = positions_of_file("topohub:sndlib/abilene", rb.read_topology("topohub:sndlib/abilene"))
+        assert places is not None
+        assert len(set(places.values())) == 12
+
+
+class TestNotebooks:
+    def test_every_answer_has_a_page_with_a_picture_and_evidence(self) -> None:
+        answers = [
+            rb.check_rs_robustness(PETERSEN, 2), rb.determine_robustness(PETERSEN), rb.tolerance(WHEEL),
+            rb.tolerance(WHEEL, model="delayed"), find_attack(WHEEL, 1, "delayed").attack,
+            rb.check_joint_robustness(rb.TimeVaryingGraph([nx.path_graph(4)], period=1), 2),
+        ]  # fmt: skip
+        for answer in answers:
+            page = answer._repr_mimebundle_()["text/html"]
+            assert page.count("<img") == 1
+            assert "<details>" in page
+            assert str(answer) == answer.summary()
+            assert repr(answer).startswith(f"<{type(answer).__name__}: ")
+            assert "\n" not in repr(answer)
+            json.dumps(answer.as_dict(), allow_nan=False)
+        assert "<img" not in find_trap(WHEEL, 1)._repr_html_()
+
+    def test_labels_are_escaped_and_in_natural_order(self) -> None:
+        names = {i: f"<i>{i}" for i in range(11)}
+        path = nx.relabel_nodes(nx.path_graph(11), names)
+        page = rb.check_rs_robustness(path, 2)._repr_html_()
+        assert "<i>" not in page
+        long = rb.check_rs_robustness(nx.relabel_nodes(nx.path_graph(12), {i: f"n{i}" for i in range(12)}), 2)
+        text = dict(long.evidence())
+        shown = [name for side in ("S1", "S2") for name in text[side].strip("{}").split(", ")]
+        for side in ("S1", "S2"):
+            numbers = [int(name.strip("'n")) for name in text[side].strip("{}").split(", ")]
+            assert numbers == sorted(numbers)
+        assert shown
+
+    def test_large_networks_are_not_drawn_unasked(self) -> None:
+        assert "<img" not in rb.check_rs_robustness(nx.path_graph(200), 2)._repr_html_()
+
+
+class TestCommand:
+    def run(self, *arguments: str) -> Any:
+        return CliRunner().invoke(robustness, ["draw", *arguments])
+
+    def test_pictures_of_every_kind(self, tmp_path: Path) -> None:
+        graph = tmp_path / "wheel.json"
+        graph.write_text(json.dumps(nx.node_link_data(WHEEL, edges="edges")), encoding="utf-8")
+        attack = tmp_path / "attack.json"
+        CliRunner().invoke(robustness, ["attack", str(graph), "--model", "delayed", "-o", str(attack)])
+        for k, options in enumerate(([], ["-r", "3"], ["-r", "2", "-s", "2"], ["--attack", str(attack)])):
+            for suffix in ("svg", "png", "pdf"):
+                picture = tmp_path / f"{k}.{suffix}"
+                done = self.run(str(graph), *options, "-o", str(picture))
+                assert done.exit_code == 0, done.output
+                assert picture.stat().st_size > 1000
+        assert self.run(str(graph), "-r", "3", "-o", str(tmp_path / "x.svg")).stdout == "not (3,1)-robust\n"
+
+    def test_wrong_use(self, tmp_path: Path) -> None:
+        graph = tmp_path / "g.json"
+        graph.write_text(json.dumps(nx.node_link_data(nx.path_graph(4), edges="edges")), encoding="utf-8")
+        target = str(tmp_path / "x.svg")
+        assert self.run(str(graph), "-s", "2", "-o", target).exit_code == 2
+        assert self.run(str(graph), "-r", "2", "--attack", str(graph), "-o", target).exit_code == 2
+        done = self.run(str(graph), "-o", str(tmp_path / "x.doc"))
+        assert done.exit_code == 2
+        assert "suffix" in done.stderr
+        done = self.run(str(graph), "--attack", str(graph), "-o", target)
+        assert done.exit_code == 3
+        assert done.stderr.count("\n") == 1
+        assert not Path(target).exists()

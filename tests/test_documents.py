@@ -1,0 +1,86 @@
+"""Output that the documents show is output that the commands give.
+
+A fenced block under ``<!-- output of: COMMAND | COMMAND -->`` is what those commands print in a folder with the
+examples; times are left as they stand. ``python tests/test_documents.py`` writes the blocks anew.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+BLOCK = re.compile(
+    r"^<!-- output of: (?P<commands>.*?) -->\n```(?P<language>\w*)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL
+)
+SHOWN = [(page, match) for page in PAGES for match in BLOCK.finditer(page.read_text(encoding="utf-8"))]
+#: What differs from run to run: times.
+VARIABLE = re.compile(r'("seconds": |seconds +|in )[0-9.e-]+( s)?')
+
+
+def output(commands: str) -> str:
+    """Return what a pipeline of our commands prints, in a folder of its own."""
+    with tempfile.TemporaryDirectory() as folder:
+        said = b""
+        shutil.copytree(ROOT / "examples", Path(folder) / "examples")
+        for command in commands.split(" | "):
+            program, *arguments = shlex.split(command)
+            assert program == "robustness"
+            command_line = [sys.executable, "-m", "cli", *arguments]
+            done = subprocess.run(
+                command_line, input=said, cwd=folder, capture_output=True, timeout=120, check=False
+            )
+            assert done.returncode in (0, 10, 30), done.stderr.decode()
+            said = done.stdout
+    return said.decode()
+
+
+def as_shown(commands: str, language: str) -> str:
+    """Return the output as a page shows it: JSON with a key a line, what is nested on one line."""
+    text = output(commands)
+    if language != "json":
+        return text
+    rows = [f"  {json.dumps(key)}: {json.dumps(value)}" for key, value in json.loads(text).items()]
+    return "{\n" + ",\n".join(rows) + "\n}\n"
+
+
+def lasting(text: str) -> str:
+    return VARIABLE.sub(r"\1*", text)
+
+
+def test_there_are_blocks() -> None:
+    assert SHOWN
+    unmarked = [page.name for page in PAGES if re.search(r"(?<!-->\n)```json\n", page.read_text(encoding="utf-8"))]
+    assert unmarked == []
+
+
+@pytest.mark.parametrize(("page", "match"), SHOWN, ids=lambda value: getattr(value, "name", None))
+def test_the_block_is_what_the_commands_print(page: Path, match: re.Match[str]) -> None:
+    assert lasting(match["text"]) == lasting(as_shown(match["commands"], match["language"]))
+
+
+def rewrite() -> None:
+    """Write every block anew."""
+    for page in PAGES:
+        text = page.read_text(encoding="utf-8")
+
+        def made(match: re.Match[str]) -> str:
+            shown = as_shown(match["commands"], match["language"])
+            if lasting(shown) == lasting(match["text"]):
+                return match[0]
+            return f"<!-- output of: {match['commands']} -->\n```{match['language']}\n{shown}```"
+
+        page.write_text(BLOCK.sub(made, text), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    rewrite()
