@@ -31,6 +31,7 @@ COMMANDS: Mapping[str, str] = MappingProxyType(
         "find": "cli.find:command",
         "simulate": "cli.simulate:command",
         "attack": "cli.attack:command",
+        "survey": "cli.survey:command",
         "draw": "cli.draw:command",
     }
 )

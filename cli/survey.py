@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
 import click
 
@@ -43,8 +43,8 @@ _NAMES = tuple(_KINDS.values())
     "--model", "models", type=click.Choice(MODELS), multiple=True, help="Threat models to look at; all unless given."
 )
 @click.option("--no-models", is_flag=True, help="Only r* and s: no threat model is looked at.")
-@click.option("--as", "kind", type=click.Choice(_NAMES), help="How rows are written; the suffix of -o tells, else table.")
-@click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE", help="Write them there.")
+@click.option("--as", "kind", type=click.Choice(_NAMES), help="How rows are written; told by the suffix of -o.")
+@click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE", help="For the rows.")
 @click.option(
     "--state",
     type=click.Path(dir_okay=False, path_type=Path),
@@ -71,7 +71,7 @@ def command(
     ctx: click.Context,
     console: Console,
     paths: tuple[str, ...],
-    listed: click.utils.LazyFile | None,
+    listed: TextIO | None,
     r: int | None,
     s: int | None,
     survive: int | None,
@@ -100,21 +100,17 @@ def command(
     wanted = [*paths, *_listed(listed)]
     if not wanted:
         raise click.UsageError("name a file, a folder, a pattern or topohub names, or a list of them with --from.")
-    kind = kind or ("table" if output is None else _KINDS.get(output.suffix.lower(), "table"))
+    from robustness.files.writing import require_different_files
     from robustness.surveying import Gate, survey
-    from robustness.surveying.tables import TABLES
 
+    require_different_files(wanted, [output, state])
+    looked_at = () if no_models else models or MODELS
     line = _Line(console)
-    rows: list[Row] = []
-
-    def note(row: Row, finished: int, of: int) -> None:
-        rows.append(row)
-        line.note(row, finished, of)
 
     def work() -> Survey:
         return survey(
             wanted,
-            models=() if no_models else models or None,
+            models=looked_at,
             gate=Gate(r, 1 if s is None else s, survive),
             time_limit=timeout,
             total_time_limit=total_timeout,
@@ -122,36 +118,48 @@ def command(
             seed=seed,
             state=state,
             certificates=certificates,
-            on_row=note,
+            on_row=line.note,
         )
 
-    looked_at = () if no_models else models or MODELS
     try:
         found: Survey | None = interruptibly(work, None, line.tick)
     except KeyboardInterrupt:
         found = None
     line.wipe()
-    for each in found.notes if found is not None else ():
-        console.warn(each)
-    shown = found.rows if found is not None else tuple(rows)
-    content = TABLES[kind](shown, looked_at)
-    if output is not None:
-        from robustness.files import replace_file
+    _show(console, found, tuple(line.rows), looked_at, kind, output, as_json)
+    ctx.exit(ExitCode.INTERRUPTED if found is None else _exit_code(found.worst))
 
+
+def _show(
+    console: Console,
+    found: Survey | None,
+    finished: tuple[Row, ...],
+    models: tuple[str, ...],
+    kind: str | None,
+    output: Path | None,
+    as_json: bool,
+) -> None:
+    """Write and print what is known; ``found`` is None after Ctrl-C, when the finished rows are all there is."""
+    from robustness.files.writing import replace_file
+    from robustness.surveying.front import Survey
+    from robustness.surveying.tables import TABLES
+
+    shown = Survey(finished, models) if found is None else found
+    for note in shown.notes:
+        console.warn(note)
+    kind = kind or ("table" if output is None else _KINDS.get(output.suffix.lower(), "table"))
+    content = TABLES[kind](shown.rows, models)
+    if output is not None:
         replace_file(output, content.encode())
         console.talk(f"wrote {output} ({len(shown)} networks)")
     if as_json:
-        from robustness.surveying.front import Survey as Finished
-
-        console.document(SCHEMA, (found or Finished(shown, looked_at)).as_dict() | {"is_complete": found is not None})
+        console.document(SCHEMA, shown.as_dict() | {"is_complete": found is not None and not found.missing})
     elif output is None:
         console.result(content.rstrip("\n"))
     if found is None:
         console.error("interrupted: the rows that are printed hold, nothing is claimed about the other networks")
-        ctx.exit(ExitCode.INTERRUPTED)
-    if found.missing:
+    elif found.missing:
         console.talk(f"undecided: the time limit left {len(found.missing)} networks unasked")
-    ctx.exit(_exit_code(found.worst))
 
 
 def _exit_code(worst: str) -> ExitCode:
@@ -163,7 +171,7 @@ def _exit_code(worst: str) -> ExitCode:
     }[worst]
 
 
-def _listed(stream: click.utils.LazyFile | None) -> list[str]:
+def _listed(stream: TextIO | None) -> list[str]:
     """Return the paths that a list names."""
     if stream is None:
         return []
@@ -182,9 +190,11 @@ class _Line:
         self._is_shown = is_terminal and not console.is_quiet
         self._started = time.monotonic()
         self._text = "reading"
+        self.rows: list[Row] = []
 
     def note(self, row: Row, finished: int, of: int) -> None:
         """Remember that one more row is finished."""
+        self.rows.append(row)
         spent = time.monotonic() - self._started
         left = spent / finished * (of - finished)
         self._text = f"{finished} of {of} networks, about {left:.0f} s left, last {row.network}"

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from robustness.files import read_topology, write_topology
     from robustness.graph_search import find_graph
     from robustness.simulation.front import simulate
+    from robustness.surveying import Gate, survey
     from robustness.threat_models import ToleranceResult, tolerance
     from robustness.time_varying import (
         JointResult,
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
 
 #: Names whose modules are imported when they are first asked for.
 _LATER = {
+    "Gate": "robustness.surveying",
     "JointResult": "robustness.time_varying",
     "TimeVaryingGraph": "robustness.time_varying",
     "ToleranceResult": "robustness.threat_models",
@@ -54,6 +56,7 @@ _LATER = {
     "joint_curve": "robustness.time_varying",
     "read_topology": "robustness.files",
     "simulate": "robustness.simulation.front",
+    "survey": "robustness.surveying",
     "tolerance": "robustness.threat_models",
     "write_topology": "robustness.files",
 }
@@ -63,6 +66,7 @@ __all__ = [
     "Bound",
     "Bounds",
     "Digraph",
+    "Gate",
     "GraphWarning",
     "InternalError",
     "InvalidGraph",
@@ -91,6 +95,7 @@ __all__ = [
     "read_topology",
     "robustness_profile",
     "simulate",
+    "survey",
     "tolerance",
     "write_topology",
 ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import importlib
 import os
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -79,10 +80,10 @@ class Survey:
             When pandas is not installed.
         """
         try:
-            import pandas as pd
+            pandas = importlib.import_module("pandas")
         except ImportError:
             raise MissingExtra("to_frame needs the package pandas: install it with: pip install pandas") from None
-        return pd.DataFrame([tables.flat(row, self.models) for row in self.rows])
+        return pandas.DataFrame([tables.flat(row, self.models) for row in self.rows])
 
     def __str__(self) -> str:
         return tables.text(self.rows, self.models)
@@ -146,7 +147,7 @@ def survey(
     >>> import networkx as nx
     >>> rows = survey({"wheel": nx.wheel_graph(5), "complete": nx.complete_graph(7)}, models=["delayed"])
     >>> [(row.network, row.r, row.guaranteed["delayed"]) for row in rows]
-    [('wheel', 2, 0), ('complete', 4, 2)]
+    [('wheel', 2, 0), ('complete', 4, 1)]
     """
     if type(jobs) is not int or jobs < 1:
         raise InvalidParameter(f"jobs is an integer of at least 1, not {jobs!r}")

@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
-from xml.etree import ElementTree
+from xml.etree import ElementTree as ET
 
 from robustness.surveying.row import Row
 
@@ -100,27 +100,28 @@ def _junit(rows: Sequence[Row], models: Sequence[str]) -> str:
 
     A gate that is undecided is a failure too, since nobody may deploy on it; its type tells it apart.
     """
-    counts = {
-        "tests": len(rows),
-        "failures": sum(row.gate in ("refuted", "undecided") for row in rows),
-        "errors": sum(bool(row.error) for row in rows),
-    }
-    suite = ElementTree.Element("testsuite", name="robustness survey", **{k: str(v) for k, v in counts.items()})
+    suite = ET.Element(
+        "testsuite",
+        name="robustness survey",
+        tests=str(len(rows)),
+        failures=str(sum(row.gate in ("refuted", "undecided") for row in rows)),
+        errors=str(sum(bool(row.error) for row in rows)),
+    )
     head = cells([], models)[0]
     for row in rows:
-        case = ElementTree.SubElement(
+        case = ET.SubElement(
             suite, "testcase", classname="robustness", name=_xml(row.network), time=f"{row.seconds:.6f}"
         )
         facts = ", ".join(
             f"{name} {cell}" for name, cell in zip(head[1:], _line(row, models, False)[1:], strict=True) if cell
         )
         if row.error:
-            ElementTree.SubElement(case, "error", message=_xml(row.error))
+            ET.SubElement(case, "error", message=_xml(row.error))
         elif row.gate in ("refuted", "undecided"):
-            ElementTree.SubElement(case, "failure", type=row.gate, message=_xml(f"{row.gate}: {facts}"))
-        ElementTree.SubElement(case, "system-out").text = _xml(facts)
-    ElementTree.indent(suite)
-    return ElementTree.tostring(suite, encoding="unicode", xml_declaration=False) + "\n"
+            ET.SubElement(case, "failure", type=row.gate, message=_xml(f"{row.gate}: {facts}"))
+        ET.SubElement(case, "system-out").text = _xml(facts)
+    ET.indent(suite)
+    return ET.tostring(suite, encoding="unicode", xml_declaration=False) + "\n"
 
 
 def _xml(words: str) -> str:

@@ -121,7 +121,8 @@ def _read(source: str, name: str, stdin: BinaryIO | None) -> bytes:
 def _from_directory(path: Path, period: int | None) -> TimeVaryingGraph:
     """Return the sequence of the files of a directory; hidden ones are skipped, others must be topologies."""
     try:
-        files = sorted((entry for entry in path.iterdir() if not entry.name.startswith(".")), key=lambda entry: natural_key(entry.name))
+        entries = (entry for entry in path.iterdir() if not entry.name.startswith("."))
+        files = sorted(entries, key=lambda entry: natural_key(entry.name))
     except OSError as problem:
         raise UnreadableTopology(f"cannot be read: {problem.strerror}") from None
     if not files:

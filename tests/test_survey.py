@@ -1,0 +1,242 @@
+"""Many networks at once: rows, gates, resumption after a kill, and tables that cannot be injected into."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import networkx as nx
+import pytest
+from click.testing import CliRunner, Result
+
+import robustness as rb
+from cli.main import robustness
+from robustness.files import write_topology
+from robustness.surveying.sources import expand
+from robustness.surveying.state import Journal
+from robustness.surveying.tables import TABLES
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    nets = tmp_path / "nets"
+    (nets / "deep").mkdir(parents=True)
+    write_topology(nx.wheel_graph(5), nets / "net10.json")
+    write_topology(nx.complete_graph(7), nets / "net2.json")
+    write_topology(nx.path_graph(4), nets / "deep" / "path.json")
+    (nets / "notes.pdf").write_bytes(b"")
+    (nets / ".hidden.json").write_bytes(b"")
+    return nets
+
+
+def run(*arguments: object) -> Result:
+    return CliRunner().invoke(robustness, ["survey", *map(str, arguments)])
+
+
+def test_rows_are_what_the_single_questions_answer(folder: Path) -> None:
+    found = rb.survey([folder])
+    assert [Path(row.network).name for row in found] == ["path.json", "net2.json", "net10.json"]
+    assert [note.split(": ")[1] for note in found.notes] == ["1 file(s) passed over, whose suffix names no format"]
+    for row in found:
+        graph = rb.read_topology(row.network)
+        known, table = rb.determine_robustness(graph), rb.tolerance(graph)
+        assert (row.r, row.r_at_most, row.s, row.s_at_most) == (known.r, known.r, known.s, known.s)
+        assert row.guaranteed == {result.model: result.guaranteed for result in table.results}
+        assert row.refuted == {result.model: result.refuted for result in table.results}
+        assert (row.nodes, row.arcs, row.sha256, row.error) == (graph.n, graph.arc_count, graph.sha256, "")
+
+
+def test_graphs_by_name_in_pairs_and_bare() -> None:
+    wheel = nx.wheel_graph(5)
+    for graphs, name in (({"w": wheel}, "w"), ([("w", wheel)], "w"), ([wheel], "0")):
+        (row,) = rb.survey(graphs, models=[])
+        assert (row.network, row.r, row.guaranteed) == (name, 2, {})
+
+
+@pytest.mark.parametrize(
+    ("gate", "standings", "code"),
+    [
+        ([], ["", "", ""], 0),
+        (["-r", 1], ["passed"] * 3, 0),
+        (["-r", 2, "-s", 2], ["refuted", "passed", "passed"], 10),
+        (["-r", 2, "-s", 6], ["refuted", "passed", "refuted"], 10),
+        (["--require", 1, "--model", "malicious"], ["refuted", "passed", "passed"], 10),
+        (["--require", 0], ["passed"] * 3, 0),
+    ],
+)
+def test_the_exit_code_is_that_of_the_worst_gate(
+    gate: list[object], standings: list[str], code: int, folder: Path
+) -> None:
+    outcome = run(folder, *gate, "--json")
+    assert outcome.exit_code == code
+    assert [row["gate"] for row in json.loads(outcome.stdout)["rows"]] == standings
+
+
+def test_a_file_that_cannot_be_read_has_a_row_and_holds_nobody_up(folder: Path) -> None:
+    (folder / "bad.json").write_text("{", encoding="utf-8")
+    outcome = run(folder, "-r", 1, "--json")
+    assert outcome.exit_code == 3
+    rows = {Path(row["network"]).name: row for row in json.loads(outcome.stdout)["rows"]}
+    assert rows["bad.json"]["gate"] == "error"
+    assert "bad.json" in rows["bad.json"]["error"]
+    assert rows["net2.json"]["gate"] == "passed"
+    assert run("gone.json").exit_code == 3
+    assert run(folder / "deep" / "*.gml").exit_code == 3
+    assert run().exit_code == 2
+
+
+def test_undecided_within_the_limit_is_30_and_nobody_is_forgotten(tmp_path: Path) -> None:
+    for k in range(3):
+        write_topology(nx.random_regular_graph(10, 60, seed=k), tmp_path / f"{k}.json")
+    outcome = run(tmp_path, "--no-models", "-r", 4, "--timeout", 1e-9, "--json")
+    found = json.loads(outcome.stdout)
+    assert (outcome.exit_code, len(found["rows"])) == (30, 3)
+    assert all(row["gate"] == "undecided" for row in found["rows"])
+    assert all(row["r"] <= 4 <= row["r_at_most"] for row in found["rows"])
+    outcome = run(tmp_path, "--no-models", "--total-timeout", 1e-9, "--json")
+    found = json.loads(outcome.stdout)
+    assert (outcome.exit_code, len(found["rows"]) + len(found["missing"]), found["is_complete"]) == (30, 3, False)
+
+
+def test_sources(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("topohub")
+    monkeypatch.chdir(folder)
+    assert expand(["*.json"]).names == ("net2.json", "net10.json")
+    assert expand(["net2.json", "net2.json"]).notes == ("net2.json: asked for twice, surveyed once",)
+    assert "topohub:sndlib/geant" in expand(["topohub:sndlib/*"]).names
+    with pytest.raises(rb.UnreadableTopology, match="the groups are"):
+        expand(["topohub:nothing/*"])
+    (folder / "empty").mkdir()
+    with pytest.raises(rb.UnreadableTopology, match="holds no file of a known format"):
+        expand(["empty"])
+    (folder / "list").write_text("# two\nnet2.json\n\nnet10.json\n", encoding="utf-8")
+    outcome = run("--from", "list", "--no-models", "--as", "csv")
+    assert [row["network"] for row in csv.DictReader(io.StringIO(outcome.stdout))] == ["net2.json", "net10.json"]
+
+
+def test_certificates_are_verified_by_the_kernel(folder: Path, tmp_path: Path) -> None:
+    from certificates import verify
+
+    for row in rb.survey([folder], models=[], certificates=tmp_path / "certs"):
+        path = Path(row.certificate)
+        graph = path.with_name(path.name.rpartition(f"-{row.r}-robust")[0] + ".graph")
+        claim = verify(graph.read_bytes(), path.read_bytes())
+        assert (claim.verdict, claim.r, claim.sha256) == ("robust", row.r, row.sha256)
+
+
+class TestState:
+    def test_rows_of_an_earlier_run_are_not_computed_again(
+        self, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        state = tmp_path / "state"
+        first = rb.survey([folder], state=state)
+        monkeypatch.setattr("robustness.surveying.front.measure", lambda *_: 1 / 0)
+        assert rb.survey([folder], state=state).rows == first.rows
+        monkeypatch.undo()
+        write_topology(nx.complete_graph(5), folder / "net2.json")
+        again = {Path(row.network).name: row.r for row in rb.survey([folder], state=state)}
+        assert again["net2.json"] == 3
+        asked = rb.survey([folder], state=state, gate=rb.Gate(r=1))
+        assert {row.gate for row in asked} == {"passed"}
+
+    def test_a_cut_line_is_dropped_and_a_damaged_one_refused(self, folder: Path, tmp_path: Path) -> None:
+        state = tmp_path / "state"
+        rb.survey([folder], models=[], state=state)
+        whole = state.read_bytes()
+        state.write_bytes(whole[:-7])
+        assert len(rb.survey([folder], models=[], state=state)) == 3
+        assert state.read_bytes().count(b"\n") == 3
+        state.write_bytes(whole.replace(b'"r": ', b'"r": 1', 1))
+        with pytest.raises(rb.UnreadableTopology, match="line 1: not a line of a survey's journal"):
+            Journal(state)
+        state.write_text("something else\n", encoding="utf-8")
+        with pytest.raises(rb.UnreadableTopology, match="line 1"):
+            Journal(state)
+
+    @pytest.mark.parametrize("ending", [signal.SIGKILL, signal.SIGINT])
+    def test_a_killed_run_goes_on_where_it_was(self, ending: signal.Signals, tmp_path: Path) -> None:
+        nets, state = tmp_path / "nets", tmp_path / "state"
+        nets.mkdir()
+        for k in range(4):
+            write_topology(nx.gnp_random_graph(12, 0.6, seed=k), nets / f"{k}.json")
+        write_topology(nx.random_regular_graph(20, 90, seed=1), nets / "9.json")
+        command = [sys.executable, "-m", "cli", "survey", str(nets), "--no-models", "--state", str(state), "--json"]
+        with subprocess.Popen(
+            command,
+            cwd=ROOT,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        ) as process:
+            while not state.exists() or state.read_bytes().count(b"\n") < 4:
+                assert process.poll() is None
+                time.sleep(0.05)
+            process.send_signal(ending)
+            out, _ = process.communicate(timeout=60)
+        if ending is signal.SIGINT:
+            assert process.returncode == 130
+            assert len(json.loads(out)["rows"]) == 4
+        os.unlink(nets / "9.json")
+        before = state.read_bytes()
+        assert len(rb.survey([nets], models=[], state=state)) == 4
+        assert state.read_bytes() == before
+
+
+class TestTables:
+    EVIL = "=a|b<script>\x1b[31m\x00&\"x\",\ny"
+
+    def rows(self) -> rb.surveying.Survey:  # type: ignore[name-defined]
+        return rb.survey({self.EVIL: nx.wheel_graph(5), "plain": nx.complete_graph(7)}, gate=rb.Gate(r=3))
+
+    def test_csv_and_json_lines_keep_every_letter(self) -> None:
+        found = self.rows()
+        read = list(csv.DictReader(io.StringIO(TABLES["csv"](found.rows, found.models))))
+        assert [row["network"] for row in read] == [self.EVIL, "plain"]
+        assert read[1]["delayed guaranteed"] == "1"
+        lines = [json.loads(line) for line in TABLES["jsonl"](found.rows, found.models).splitlines()]
+        assert [line["network"] for line in lines] == [self.EVIL, "plain"]
+        assert {line["schema"] for line in lines} == {"robustness/survey-row/1"}
+
+    def test_junit_is_xml_with_a_failure_for_a_refuted_gate(self) -> None:
+        found = self.rows()
+        suite = ET.fromstring(TABLES["junit"](found.rows, found.models))  # noqa: S314 - our own
+        assert (suite.get("tests"), suite.get("failures"), suite.get("errors")) == ("2", "1", "0")
+        assert [case.find("failure") is not None for case in suite] == [True, False]
+
+    def test_text_markdown_and_html_cannot_be_steered(self) -> None:
+        found = self.rows()
+        for kind in ("table", "markdown"):
+            text = TABLES[kind](found.rows, found.models)
+            assert "\x1b" not in text
+            assert text.count("\n") == (3 if kind == "table" else 4)
+        assert "<script>" not in found._repr_html_()
+        assert str(found).splitlines()[0].split() == [
+            "network", "nodes", "arcs", "r*", "s", *found.models, "gate", "seconds", "note"
+        ]  # fmt: skip
+
+    def test_the_suffix_tells_the_kind(self, folder: Path, tmp_path: Path) -> None:
+        for suffix, start in ((".csv", "network,"), (".jsonl", "{"), (".xml", "<testsuite"), (".md", "| network")):
+            target = tmp_path / f"rows{suffix}"
+            assert run(folder, "--no-models", "-o", target).exit_code == 0
+            assert target.read_text(encoding="utf-8").startswith(start)
+
+
+def test_misuse() -> None:
+    with pytest.raises(rb.InvalidParameter, match="jobs"):
+        rb.survey([], jobs=0)
+    with pytest.raises(rb.InvalidParameter, match="threat model"):
+        rb.survey([], models=["friendly"])
+    with pytest.raises(rb.InvalidParameter, match="r of a gate"):
+        rb.Gate(r=-1)
+    assert run("x.json", "-s", 2).exit_code == 2
+    assert run("x.json", "--no-models", "--require", 1).exit_code == 2
