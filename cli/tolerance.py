@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -143,19 +143,31 @@ def command(
     started = time.perf_counter()
     with ProgressLine(console) as line:
 
-        def work() -> Report:
-            return _examine(network, graph, model, (tau, delay, gap), required, timeout, jobs, seed, line)
+        finished: list[ToleranceResult] = []
 
+        def work() -> Report:
+            return _examine(
+                network, graph, model, (tau, delay, gap), required, timeout, jobs, seed, line, finished.append
+            )
+
+        is_interrupted = False
         try:
             report = interruptibly(work, timeout, line.tick)
-        except Overrun:
-            report = _nothing(network, graph, model, tau, required, time.perf_counter() - started)
+        except (Overrun, KeyboardInterrupt) as stop:
+            is_interrupted = isinstance(stop, KeyboardInterrupt)
+            if is_interrupted and not finished:
+                raise
+            why = "interrupted" if is_interrupted else "the time limit was reached"
+            report = _stopped(network, graph, model, tau, required, time.perf_counter() - started, finished, why)
     if output is not None:
         _write_evidence(console, report, output, timeout, jobs, seed)
     if as_json:
         console.document(SCHEMA, report.document())
     else:
         console.result("\n".join(_lines(report, source, whole=console.is_verbose)))
+    if is_interrupted:
+        console.error(f"interrupted: what is printed of {len(finished)} models holds, nothing else is claimed")
+        ctx.exit(ExitCode.INTERRUPTED)
     ctx.exit(report.exit_code())
 
 
@@ -180,6 +192,7 @@ def _examine(
     jobs: int,
     seed: int,
     line: ProgressLine,
+    on_result: Callable[[ToleranceResult], None],
 ) -> Report:
     from robustness.errors import InternalError
     from robustness.threat_models import tolerance
@@ -189,8 +202,9 @@ def _examine(
     started = time.perf_counter()
     tau, delay, gap = ages
     found = tolerance(
-        network, model, tau=tau, delay=delay, gap=gap, time_limit=timeout, jobs=jobs, seed=seed, progress=line
-    )
+        network, model, tau=tau, delay=delay, gap=gap, time_limit=timeout, jobs=jobs, seed=seed, progress=line,
+        on_result=on_result,
+    )  # fmt: skip
     table = found if isinstance(found, ToleranceTable) else ToleranceTable(graph, (found,))
     confirmed = {result.model: confirm(result) for result in table.results}
     if False in confirmed.values():
@@ -234,25 +248,31 @@ def _write_evidence(
             replace_file(folder / f"{result.model}-attack.json", text.encode())
 
 
-def _nothing(
+def _stopped(
     network: Digraph | TimeVaryingGraph,
     graph: Digraph,
     model: str | None,
     tau: int | None,
     required: int | None,
     seconds: float,
+    finished: list[ToleranceResult],
+    why: str,
 ) -> Report:
-    """Return the report of work that did not keep its time limit: nothing is claimed."""
+    """Return the report of work that was stopped: what was finished holds, of the rest nothing is claimed."""
     from robustness.threat_models.models import THREAT_MODELS
     from robustness.threat_models.over_time import MODELS_OVER_TIME
     from robustness.threat_models.results import Reason, Standing, ToleranceResult, ToleranceTable
     from robustness.time_varying import TimeVaryingGraph
 
-    reason = Reason(Standing.UNDECIDED, 0, "nothing was decided", "none: the time limit was reached", "none")
+    reason = Reason(Standing.UNDECIDED, 0, "nothing was decided", f"none: {why}", "none")
     sequence = network if isinstance(network, TimeVaryingGraph) else None
     names = (model,) if model is not None else MODELS if sequence is None else MODELS_OVER_TIME
+    known = {result.model: result for result in finished}
     results = tuple(
-        ToleranceResult(graph, THREAT_MODELS[name], -1, None, (reason,), sequence=sequence, tau=tau) for name in names
+        known[name]
+        if name in known
+        else ToleranceResult(graph, THREAT_MODELS[name], -1, None, (reason,), sequence=sequence, tau=tau)
+        for name in names
     )
     return Report(graph, ToleranceTable(graph, results), dict.fromkeys(names), required, seconds)
 

@@ -31,6 +31,7 @@ def tolerance(
     jobs: int = 1,
     seed: int = 0,
     progress: Callable[[Progress], None] | None = None,
+    on_result: Callable[[ToleranceResult], None] | None = None,
 ) -> ToleranceResult: ...
 
 
@@ -46,6 +47,7 @@ def tolerance(
     jobs: int = 1,
     seed: int = 0,
     progress: Callable[[Progress], None] | None = None,
+    on_result: Callable[[ToleranceResult], None] | None = None,
 ) -> ToleranceTable: ...
 
 
@@ -60,6 +62,7 @@ def tolerance(
     jobs: int = 1,
     seed: int = 0,
     progress: Callable[[Progress], None] | None = None,
+    on_result: Callable[[ToleranceResult], None] | None = None,
 ) -> ToleranceResult | ToleranceTable:
     """Return the largest f that a threat model promises to survive, and the smallest f with an attack.
 
@@ -81,6 +84,8 @@ def tolerance(
         Wall-clock seconds in all; what is not decided by then is UNDECIDED and claimed by nobody.
     jobs, seed, progress
         As for :func:`robustness.check_rs_robustness`.
+    on_result : callable, optional
+        Called with the result of each threat model as soon as it is known.
 
     Returns
     -------
@@ -113,13 +118,16 @@ def tolerance(
     limits = Limits.of(time_limit, jobs, seed, progress)
     decisions, names = _questions(G, model, (tau, delay, gap), limits)
     over = over_time if isinstance(decisions, JointDecisions) else threat_model_named
-    results = tuple(judge(decisions, over(name)) for name in names)
-    if isinstance(decisions, JointDecisions):
-        window = decisions.longest_window
-        results = tuple(
-            replace(result, sequence=decisions.sequence, tau=decisions.tau, longest_window=window) for result in results
-        )
-    return results[0] if model is not None else ToleranceTable(decisions.graph, results)
+    results: list[ToleranceResult] = []
+    for name in names:
+        result = judge(decisions, over(name))
+        if isinstance(decisions, JointDecisions):
+            sequence, window = decisions.sequence, decisions.longest_window
+            result = replace(result, sequence=sequence, tau=decisions.tau, longest_window=window)
+        results.append(result)
+        if on_result is not None:
+            on_result(result)
+    return results[0] if model is not None else ToleranceTable(decisions.graph, tuple(results))
 
 
 def _questions(

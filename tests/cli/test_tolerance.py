@@ -16,10 +16,11 @@ from click.testing import CliRunner, Result
 
 from certificates import verify, verify_tolerance
 from cli.exit_codes import ExitCode
+from cli.interruption import Overrun
 from cli.main import robustness
 from cli.tolerance import MODELS
 from robustness.files import encode_topology
-from robustness.threat_models import THREAT_MODELS
+from robustness.threat_models import THREAT_MODELS, ThreatModel, asking
 from robustness.threat_models.results import ToleranceResult
 
 WHEEL = encode_topology(nx.wheel_graph(5))
@@ -233,3 +234,24 @@ def test_ctrl_c(tmp_path: Path) -> None:
 def test_summary_is_the_library_s(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ToleranceResult, "summary", lambda _: "as the library says")
     assert document("--model", "delayed")["models"][0]["summary"] == "as the library says"
+
+
+@pytest.mark.parametrize("stop", [KeyboardInterrupt, Overrun])
+def test_what_was_decided_before_a_stop_is_kept(stop: type[BaseException], monkeypatch: pytest.MonkeyPatch) -> None:
+    judged: list[str] = []
+    judge = asking.judge
+
+    def stubborn(decisions: object, threat: ThreatModel) -> ToleranceResult:
+        if len(judged) == 2:
+            raise stop
+        judged.append(threat.name)
+        return judge(decisions, threat)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(asking, "judge", stubborn)
+    graph = encode_topology(nx.wheel_graph(5))
+    outcome = CliRunner().invoke(robustness, ["tolerance", "-", "--json"], input=graph)
+    found = {model["model"]: model for model in json.loads(outcome.stdout)["models"]}
+    assert outcome.exit_code == (130 if stop is KeyboardInterrupt else 30)
+    assert [found[name]["guaranteed"] for name in judged] == [1, 0]
+    assert len(found) == 5
+    assert all(model["guaranteed"] == -1 for name, model in found.items() if name not in judged)
