@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import importlib
 import importlib.util
 import os
@@ -51,6 +52,19 @@ class CommandTable(click.Group):
         module, _, attribute = COMMANDS[cmd_name].partition(":")
         command: click.Command = getattr(importlib.import_module(module), attribute)
         return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find the command; a slip of the pen is told with what was probably meant."""
+        try:
+            return super().resolve_command(ctx, args)
+        except click.UsageError as problem:
+            close = difflib.get_close_matches(args[0], COMMANDS, cutoff=0.5)
+            if not close:
+                raise
+            meant = f"{problem.message.rstrip('.')}: did you mean {' or '.join(close)}?"
+            raise click.UsageError(meant, ctx) from None
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command; whatever it raises ends in one line on standard error and an exit code."""
@@ -120,3 +134,6 @@ def main() -> None:
         robustness(prog_name="robustness")
     except SystemExit as end:
         end_process(end.code if isinstance(end.code, int) else ExitCode.DONE)
+    except OSError as problem:  # help or version that cannot be printed
+        Console().error(f"error: cannot write standard output: {problem.strerror}")
+        end_process(ExitCode.USAGE)

@@ -128,6 +128,11 @@ def _write(text: str, *, to_error: bool, end: str = "\n") -> None:
         click.echo(text + end, err=to_error, nl=False)
     except BrokenPipeError:
         _discard(sys.stderr if to_error else sys.stdout)
+    except OSError as problem:  # a full disk: what was to be said is lost, and the exit code says that it was not done
+        stream = sys.stderr if to_error else sys.stdout
+        _discard(stream)
+        name = "standard error" if to_error else "standard output"
+        raise OSError(problem.errno, problem.strerror or str(problem), name) from None
 
 
 def _discard(stream: TextIO) -> None:

@@ -95,6 +95,8 @@ def certify(
         claim = verify(graph.canonical_bytes(), certificate)
     except MalformedCertificate as problem:
         stats = dict(result.stats) | {"reason": f"the proof is beyond what the kernel checks: {problem}"}
+        if result.verdict is Verdict.NOT_ROBUST:  # the pair was re-checked: only its certificate cannot be written
+            return replace(result, stats=stats, seconds=time.monotonic() - started)
         undecided = RobustnessResult(Verdict.UNDECIDED, r, s, algorithm=result.algorithm, stats=stats)
         return replace(undecided, seconds=time.monotonic() - started)
     if (claim.verdict, claim.r, claim.s) != (result.verdict.value, r, s):

@@ -115,8 +115,11 @@ def read_topology(source: str | os.PathLike[str], stdin: BinaryIO | None = None)
     path = Path(source)
     _format_of(path.suffix, source)  # a wrong suffix is told before a wrong path: nothing has to be opened
     try:
-        if stat.S_ISDIR(os.stat(path).st_mode):
+        mode = os.stat(path).st_mode
+        if stat.S_ISDIR(mode):
             raise UnreadableTopology(f"{one_line(source)}: is a directory, not a file")
+        if not stat.S_ISREG(mode):  # opening a pipe that nobody writes to would wait for ever
+            raise UnreadableTopology(f"{one_line(source)}: is a pipe or a device, not a file: pipe it into - instead")
         with open(path, "rb") as stream:
             data = _read_limited(stream, source)
     except (OSError, ValueError) as problem:

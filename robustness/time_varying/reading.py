@@ -20,6 +20,7 @@ from __future__ import annotations
 
 import json
 import os
+import stat
 import sys
 from collections.abc import Callable, Hashable, Iterator
 from pathlib import Path
@@ -106,8 +107,12 @@ def encode_sequence(sequence: TimeVaryingGraph) -> bytes:
 def _read(source: str, name: str, stdin: BinaryIO | None) -> bytes:
     try:
         if source == "-":
+            if stdin is None and sys.stdin is None:  # as after `<&-` in a shell
+                raise UnreadableTopology("standard input: is closed")
             data = (stdin or sys.stdin.buffer).read(SIZE_LIMIT + 1)
         else:
+            if not stat.S_ISREG(os.stat(source).st_mode):  # opening a pipe that nobody writes to would wait for ever
+                raise UnreadableTopology("is no regular file: pipe it into - instead")
             with open(source, "rb") as stream:
                 data = stream.read(SIZE_LIMIT + 1)
     except (OSError, ValueError) as problem:

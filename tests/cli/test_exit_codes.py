@@ -199,7 +199,7 @@ def test_a_reader_that_goes_away_changes_no_code() -> None:
 def test_a_result_that_cannot_be_written_is_no_success() -> None:
     with open(os.devnull, "rb") as unwritable, start("check", SQUARE, stdout=unwritable) as process:
         _, err = process.communicate(timeout=60)
-    assert process.returncode == 1
+    assert process.returncode == 2
     assert b"Bad file descriptor" in err
     assert b"Traceback" not in err
 
@@ -211,3 +211,44 @@ def test_a_closed_stream_is_no_crash(closed: int) -> None:
     assert process.returncode == 0
     assert err == b""
     assert out.startswith(b"determined:") == (closed != 1)
+
+
+def test_a_pipe_that_nobody_writes_to_is_not_waited_for(tmp_path: Path) -> None:
+    for suffix, command in ((".json", ["check"]), (".csv", ["joint", "-r", "2"])):
+        pipe = tmp_path / f"pipe{suffix}"
+        os.mkfifo(pipe)
+        outcome = CliRunner().invoke(robustness, [command[0], str(pipe), *command[1:]])
+        assert (outcome.exit_code, "pipe it into - instead" in outcome.stderr) == (3, True)
+
+
+@pytest.mark.parametrize("arguments", [["check", "-"], ["joint", "-", "-r", "2"], ["tolerance", "-"]])
+def test_a_closed_input_is_bad_input(arguments: list[str]) -> None:
+    line = " ".join([sys.executable, "-m", "cli", *arguments, "<&-"])
+    done = subprocess.run(["sh", "-c", line], cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (3, "", 1)
+    assert "standard input" in done.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="only where the system has a full device")
+@pytest.mark.parametrize("arguments", [["check", SQUARE], ["check", SQUARE, "--json"], ["tolerance", SQUARE], ["-h"]])
+def test_a_full_disk_at_standard_output_is_told(arguments: list[str]) -> None:
+    with open("/dev/full", "wb") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "cli", *arguments], cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True,
+            timeout=60, check=False,
+        )  # fmt: skip
+    assert done.returncode == 2
+    assert "internal error" not in done.stderr
+
+
+def test_a_command_that_is_mistyped_is_guessed() -> None:
+    outcome = CliRunner().invoke(robustness, ["chek", SQUARE])
+    assert outcome.exit_code == 2
+    assert "did you mean check" in outcome.stderr
+
+
+def test_certify_says_not_robust_where_check_does(tmp_path: Path) -> None:
+    for r in (3, 2**31 + 1, 10**20):
+        code = CliRunner().invoke(robustness, ["check", SQUARE, "-r", str(r)]).exit_code
+        outcome = CliRunner().invoke(robustness, ["certify", SQUARE, "-r", str(r), "-o", str(tmp_path / "c")])
+        assert outcome.exit_code == code == 10
