@@ -47,13 +47,14 @@ $(READY): $(LOCK) pyproject.toml setup.py $(wildcard robustness/kernels/*.py rob
 
 venv: $(READY) ## the virtual environment, exactly as locked
 
-# The last line is the independent verification: the kernel alone, on a Python without any installed package (-S).
+# The last line is the independent verification: the kernel alone. -I: no file of the current folder and no variable of
+# the environment stands in for a part of Python.
 demo: $(READY) ## certify a real topology and verify the certificate with the kernel alone
 	@mkdir -p $(dir $(DEMO_CERTIFICATE))
 	$(BIN)/robustness check $(DEMO_GRAPH)
 	$(BIN)/robustness certify $(DEMO_GRAPH) -r $(DEMO_R) -o $(DEMO_CERTIFICATE) --canonical $(DEMO_CANONICAL)
 	$(BIN)/robustness verify $(DEMO_GRAPH) $(DEMO_CERTIFICATE) --expect robust -r $(DEMO_R)
-	$(PYTHON) -S -m certificates verify $(DEMO_CANONICAL) $(DEMO_CERTIFICATE)
+	$(BIN)/python -I -m certificates verify $(DEMO_CANONICAL) $(DEMO_CERTIFICATE)
 
 test: $(READY) ## the fast tests and the examples in the docstrings
 	$(BIN)/python -m pytest -q -n $(JOBS) -m "not slow"

@@ -1,7 +1,7 @@
 """Compile the kernels in robustness/kernels to machine code, where the machine has a C compiler.
 
-Everything else about the distribution is in pyproject.toml. An extension is optional: without a compiler the same
-sources run as plain Python, slower.
+The packages are named here, and everything else about the distribution is in pyproject.toml. An extension is optional:
+without a compiler the same sources run as plain Python, slower.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from Cython.Build import cythonize
-from setuptools import Extension, setup
+from setuptools import Extension, find_packages, setup
 from setuptools.command.build_ext import build_ext
 
 FOLDER = Path("robustness/kernels")
@@ -56,7 +56,10 @@ KERNELS = [
     if source.with_suffix(".py").stem != "words"
 ]
 
+# docs/adr/0005: the folder cli is installed under a name that nobody else's package can take.
 setup(
+    packages=[*find_packages(include=["robustness*", "certificates*"]), "robustness.cli"],
+    package_dir={"robustness.cli": "cli"},
     ext_modules=cythonize(KERNELS, build_dir="build/cython", compiler_directives=DIRECTIVES, quiet=True),
     cmdclass={"build_ext": BuildKernels},
 )

@@ -1,5 +1,5 @@
-"""``python -m cli`` is ``robustness``."""
+"""``python -m cli``, in a checkout, is ``robustness``."""
 
-from cli.main import main
+from .main import main
 
 main()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from cli.options import (
+from .options import (
     algorithm_option,
     graph_argument,
     jobs_option,
@@ -18,8 +18,8 @@ from cli.options import (
     talk_options,
     timeout_option,
 )
-from cli.output import Console, ProgressLine, graph_document, pass_console
-from cli.simulate import exit_code
+from .output import Console, ProgressLine, graph_document, pass_console
+from .simulate import exit_code
 
 if TYPE_CHECKING:
     from robustness.simulation.attacks import Attack

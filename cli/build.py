@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from cli.exit_codes import ExitCode
-from cli.options import json_option, talk_options
-from cli.output import Console, graph_document, pass_console
+from .exit_codes import ExitCode
+from .options import json_option, talk_options
+from .output import Console, graph_document, pass_console
 
 if TYPE_CHECKING:
     import networkx as nx

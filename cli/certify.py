@@ -6,9 +6,9 @@ from pathlib import Path
 
 import click
 
-from cli.exit_codes import ExitCode
-from cli.interruption import Overrun, interruptibly
-from cli.options import (
+from .exit_codes import ExitCode
+from .interruption import Overrun, interruptibly
+from .options import (
     graph_argument,
     jobs_option,
     json_option,
@@ -17,7 +17,7 @@ from cli.options import (
     talk_options,
     timeout_option,
 )
-from cli.output import Console, ProgressLine, graph_document, pass_console
+from .output import Console, ProgressLine, graph_document, pass_console
 
 __all__ = ["SCHEMA", "command"]
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from cli.exit_codes import ExitCode
-from cli.interruption import Overrun, interruptibly
-from cli.options import (
+from .exit_codes import ExitCode
+from .interruption import Overrun, interruptibly
+from .options import (
     Seconds,
     algorithm_option,
     graph_argument,
@@ -22,7 +22,7 @@ from cli.options import (
     talk_options,
     timeout_option,
 )
-from cli.output import Console, ProgressLine, graph_document, pass_console, set_document, set_text
+from .output import Console, ProgressLine, graph_document, pass_console, set_document, set_text
 
 if TYPE_CHECKING:
     from robustness.digraph import Digraph

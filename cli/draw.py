@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from cli.exit_codes import ExitCode
-from cli.options import (
+from .exit_codes import ExitCode
+from .options import (
     algorithm_option,
     graph_argument,
     jobs_option,
@@ -18,7 +18,7 @@ from cli.options import (
     talk_options,
     timeout_option,
 )
-from cli.output import Console, ProgressLine, pass_console
+from .output import Console, ProgressLine, pass_console
 
 if TYPE_CHECKING:
     from robustness.digraph import Digraph

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from cli.build import encode_with_attributes, write_graph
-from cli.exit_codes import ExitCode
-from cli.interruption import Overrun, interruptibly
-from cli.options import jobs_option, json_option, seed_option, talk_options, timeout_option
-from cli.output import Console, graph_document, pass_console
+from .build import encode_with_attributes, write_graph
+from .exit_codes import ExitCode
+from .interruption import Overrun, interruptibly
+from .options import jobs_option, json_option, seed_option, talk_options, timeout_option
+from .output import Console, graph_document, pass_console
 
 if TYPE_CHECKING:
     from robustness.graph_search import FindResult

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from cli.exit_codes import ExitCode
-from cli.interruption import Overrun, interruptibly
-from cli.options import algorithm_option, jobs_option, json_option, seed_option, talk_options, timeout_option
-from cli.output import Console, ProgressLine, pass_console, set_document, set_text
+from .exit_codes import ExitCode
+from .interruption import Overrun, interruptibly
+from .options import algorithm_option, jobs_option, json_option, seed_option, talk_options, timeout_option
+from .output import Console, ProgressLine, pass_console, set_document, set_text
 
 if TYPE_CHECKING:
     from robustness.time_varying import JointResult, TimeVaryingGraph, Violation

@@ -13,27 +13,28 @@ from typing import Any
 
 import click
 
-from cli.exit_codes import ExitCode
-from cli.interruption import end_process
-from cli.options import talk_options
-from cli.output import Console, pass_console
+from .exit_codes import ExitCode
+from .interruption import end_process
+from .options import talk_options
+from .output import Console, pass_console
 
 __all__ = ["COMMANDS", "main", "robustness"]
 
-#: Every command and where it lives. A module is imported when its command is called or listed, not before.
+#: Every command and where it lives, counted from this package, which goes by two names (docs/adr/0005). A module is
+#: imported when its command is called or listed, not before.
 COMMANDS: Mapping[str, str] = MappingProxyType(
     {
-        "check": "cli.check:command",
-        "certify": "cli.certify:command",
-        "verify": "cli.verify:command",
-        "joint": "cli.joint:command",
-        "tolerance": "cli.tolerance:command",
-        "build": "cli.build:command",
-        "find": "cli.find:command",
-        "simulate": "cli.simulate:command",
-        "attack": "cli.attack:command",
-        "survey": "cli.survey:command",
-        "draw": "cli.draw:command",
+        "check": ".check:command",
+        "certify": ".certify:command",
+        "verify": ".verify:command",
+        "joint": ".joint:command",
+        "tolerance": ".tolerance:command",
+        "build": ".build:command",
+        "find": ".find:command",
+        "simulate": ".simulate:command",
+        "attack": ".attack:command",
+        "survey": ".survey:command",
+        "draw": ".draw:command",
     }
 )
 
@@ -43,14 +44,15 @@ class CommandTable(click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the commands whose modules are there, in the order of the table."""
-        return [name for name, place in COMMANDS.items() if importlib.util.find_spec(place.partition(":")[0])]
+        places = ((name, place.partition(":")[0]) for name, place in COMMANDS.items())
+        return [name for name, module in places if importlib.util.find_spec(module, __package__)]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Import and return one command."""
         if cmd_name not in self.list_commands(ctx):
             return None
         module, _, attribute = COMMANDS[cmd_name].partition(":")
-        command: click.Command = getattr(importlib.import_module(module), attribute)
+        command: click.Command = getattr(importlib.import_module(module, __package__), attribute)
         return command
 
     def resolve_command(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from cli.output import Console
+from .output import Console
 
 if TYPE_CHECKING:
     from robustness.digraph import Digraph

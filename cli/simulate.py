@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from cli.exit_codes import ExitCode
-from cli.options import (
+from .exit_codes import ExitCode
+from .options import (
     jobs_option,
     json_option,
     load_graph,
@@ -20,7 +20,7 @@ from cli.options import (
     talk_options,
     timeout_option,
 )
-from cli.output import Console, graph_document, pass_console, set_document, set_text
+from .output import Console, graph_document, pass_console, set_document, set_text
 
 if TYPE_CHECKING:
     from certificates.graph import Label

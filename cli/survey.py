@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, TextIO
 
 import click
 
-from cli.exit_codes import ExitCode
-from cli.interruption import interruptibly
-from cli.options import jobs_option, json_option, seed_option, talk_options, timeout_option
-from cli.output import Console, pass_console
-from cli.tolerance import MODELS
+from .exit_codes import ExitCode
+from .interruption import interruptibly
+from .options import jobs_option, json_option, seed_option, talk_options, timeout_option
+from .output import Console, pass_console
+from .tolerance import MODELS
 
 if TYPE_CHECKING:
     from robustness.surveying import Row, Survey

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from cli.exit_codes import ExitCode
-from cli.interruption import Overrun, interruptibly
-from cli.options import graph_argument, jobs_option, json_option, load_graph, seed_option, talk_options, timeout_option
-from cli.output import Console, ProgressLine, graph_document, pass_console, set_text
+from .exit_codes import ExitCode
+from .interruption import Overrun, interruptibly
+from .options import graph_argument, jobs_option, json_option, load_graph, seed_option, talk_options, timeout_option
+from .output import Console, ProgressLine, graph_document, pass_console, set_text
 
 if TYPE_CHECKING:
     from robustness.digraph import Digraph

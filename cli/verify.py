@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from cli.exit_codes import ExitCode
-from cli.options import graph_argument, json_option, load_graph, talk_options
-from cli.output import Console, pass_console
+from .exit_codes import ExitCode
+from .options import graph_argument, json_option, load_graph, talk_options
+from .output import Console, pass_console
 
 if TYPE_CHECKING:
     from certificates.questions import Claim

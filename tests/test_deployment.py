@@ -30,7 +30,7 @@ except OSError:
     pass
 else:
     raise SystemExit("the folder of the packages can be written")
-from cli.main import main
+from robustness.__main__ import main
 sys.argv[0] = "robustness"
 main()
 """
