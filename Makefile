@@ -65,8 +65,9 @@ test-slow: $(READY) ## the exhaustive sweeps
 coverage-kernel: $(READY) ## every branch of the trusted kernel is taken by its own tests
 	$(BIN)/python -m pytest -q tests/certificates --cov=certificates --cov-fail-under=100 --cov-report=term-missing
 
-lint: $(READY) ## ruff
+lint: $(READY) ## ruff: rules, docstrings and format
 	$(BIN)/ruff check .
+	$(BIN)/ruff format --check --quiet .
 
 types: $(READY) ## mypy --strict
 	$(BIN)/mypy

@@ -155,9 +155,7 @@ def _check_robust(graph_bytes: bytes, certificate: bytes, r: int) -> int:
     return claim.tree_nodes
 
 
-def _check_removals(
-    graph: CanonicalGraph, f: int, kind: tuple[int, str], lengths: Any, body: bytes
-) -> tuple[int, int]:
+def _check_removals(graph: CanonicalGraph, f: int, kind: tuple[int, str], lengths: Any, body: bytes) -> tuple[int, int]:
     """On n >= f + 2 nodes there is a trap in total iff for some M of exactly f nodes ``G - M`` is not (f+1)-robust.
 
     Of a trap with fewer, move nodes into M: from outside all three sets first, then from the larger of S1 and S2. The

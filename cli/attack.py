@@ -112,4 +112,3 @@ def _carry_out(attack: Attack, steps: int) -> None:
     for rule in ("adp-msr", "w-msr") if attack.delayed else ("adp-msr", "dp-msr", "w-msr"):
         if not attack.run(steps, rule=rule).exact:
             raise InternalError(f"an attack made from checked evidence did not split under {rule}: please report")
-

@@ -143,7 +143,6 @@ def command(
     network, graph = _load(source, tau, period)
     started = time.perf_counter()
     with ProgressLine(console) as line:
-
         finished: list[ToleranceResult] = []
 
         def work() -> Report:

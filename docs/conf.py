@@ -77,5 +77,6 @@ def setup(app: Any) -> None:
     # After napoleon, which reads the same lines.
     app.connect("autodoc-process-docstring", escape_bars, priority=900)
 
+
 # Several result types have fields of the same name (S1, M, verdict); a bare name in a docstring links to one of them.
 suppress_warnings = ["ref.python"]

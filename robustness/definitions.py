@@ -28,9 +28,7 @@ __all__ = ["is_violation", "largest_conceivable_r", "r_reachable_ids", "r_reacha
 
 def r_reachable_ids(graph: Digraph, members: Set[int], r: int) -> frozenset[int]:
     """Return ``X_S^r`` for S = ``members``: the ids of S with at least r in-neighbours outside S."""
-    return frozenset(
-        i for i in members if sum(j not in members for j in graph.in_neighbours(i).tolist()) >= r
-    )
+    return frozenset(i for i in members if sum(j not in members for j in graph.in_neighbours(i).tolist()) >= r)
 
 
 def is_violation(graph: Digraph, first: Set[int], second: Set[int], r: int, s: int) -> bool:

@@ -66,9 +66,7 @@ class Undecided(RobustnessError):
         The part of a robustness profile that is proven.
     """
 
-    def __init__(
-        self, message: str, *, bounds: Bounds | None = None, profile: Mapping[int, int] | None = None
-    ) -> None:
+    def __init__(self, message: str, *, bounds: Bounds | None = None, profile: Mapping[int, int] | None = None) -> None:
         super().__init__(message)
         self.bounds = bounds
         self.profile = profile

@@ -101,9 +101,7 @@ def gain_gap(T: float, alpha: float, sigma: float = 1.0) -> str | None:
     product = alpha * T
     if low * (1 - _ROUNDING) <= product <= high * (1 + _ROUNDING) and product < 2:
         return None
-    return (
-        f"alpha T = {product:.6g} is not in {low:.6g} .. {high:.6g}: take alpha in {low / T:.6g} .. {high / T:.6g}"
-    )
+    return f"alpha T = {product:.6g} is not in {low:.6g} .. {high:.6g}: take alpha in {low / T:.6g} .. {high / T:.6g}"
 
 
 def hull_velocity_factor(T: float, alpha: float, sigma: float = 1.0) -> float:

@@ -161,7 +161,9 @@ class RobustnessResult(Shown):
             "verdict": self.verdict.value,
             "r": self.r,
             "s": self.s,
-            "witness": None if witness is None else {
+            "witness": None
+            if witness is None
+            else {
                 "S1": in_natural_order(witness.S1),
                 "S2": in_natural_order(witness.S2),
             },

@@ -36,9 +36,7 @@ def output(commands: str) -> str:
             program, *arguments = shlex.split(command)
             assert program == "robustness"
             command_line = [sys.executable, "-m", "cli", *arguments]
-            done = subprocess.run(
-                command_line, input=said, cwd=folder, capture_output=True, timeout=120, check=False
-            )
+            done = subprocess.run(command_line, input=said, cwd=folder, capture_output=True, timeout=120, check=False)
             assert done.returncode in (0, 10, 30), done.stderr.decode()
             said = done.stdout
     return said.decode()

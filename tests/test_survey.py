@@ -193,7 +193,7 @@ class TestState:
 
 
 class TestTables:
-    EVIL = "=a|b<script>\x1b[31m\x00&\"x\",\ny"
+    EVIL = '=a|b<script>\x1b[31m\x00&"x",\ny'
 
     def rows(self) -> rb.surveying.Survey:  # type: ignore[name-defined]
         return rb.survey({self.EVIL: nx.wheel_graph(5), "plain": nx.complete_graph(7)}, gate=rb.Gate(r=3))

@@ -80,9 +80,7 @@ def determine(
         settled = Bound(graph.n, "convention for fewer than two nodes")
         bounds = Bounds(settled, settled)
         table = MappingProxyType(dict.fromkeys(range(1, graph.n + 1), 1))
-        return RobustnessResult(
-            Verdict.DETERMINED, graph.n, 1, bounds=bounds, profile=table, algorithm="definition"
-        )
+        return RobustnessResult(Verdict.DETERMINED, graph.n, 1, bounds=bounds, profile=table, algorithm="definition")
     if algorithm == "auto" and graph.n <= PROFILE_NODES:
         found = _read_off(graph, limits)
         if found is not None:
@@ -223,9 +221,7 @@ def _one_thread(limits: Limits, steps: int) -> Limits:
     return Limits(limits.deadline, 1, limits.seed, limits.progress, steps)
 
 
-def _look_for_pairs(
-    work: _Work, found: Bounds, steps: Steps, turn: int, on_bounds: Callable[[Bounds], None]
-) -> Bounds:
+def _look_for_pairs(work: _Work, found: Bounds, steps: Steps, turn: int, on_bounds: Callable[[Bounds], None]) -> Bounds:
     """Let local search, from other starts each turn, lower the upper bound until its steps are spent."""
     from robustness.decision.bounds.local_search import find_violation
 

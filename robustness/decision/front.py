@@ -29,6 +29,7 @@ __all__ = [
     "robustness_profile",
 ]
 
+
 def is_r_robust(G: GraphLike, r: int, **options: Any) -> bool:
     """Return whether G is r-robust, that is (r,1)-robust.
 

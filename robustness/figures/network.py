@@ -159,9 +159,7 @@ def _draw_group(
     return drawn
 
 
-def _draw_arcs(
-    axes: Axes, picture: nx.DiGraph, graph: Digraph, marks: Marks, places: Positions, size: float
-) -> None:
+def _draw_arcs(axes: Axes, picture: nx.DiGraph, graph: Digraph, marks: Marks, places: Positions, size: float) -> None:
     """Draw what does not count first and faint, as lines where a link goes both ways; then what does, as arrows."""
     strong = marks.counted | marks.silenced | marks.added | marks.dropped
     faint = [arc for arc in picture.edges if arc not in strong]

@@ -56,9 +56,7 @@ def require_different_files(
             continue
         real = os.path.realpath(path)
         if real in seen and not _is_special(Path(real)):
-            raise InvalidParameter(
-                f"the output {os.fspath(path)} is the same file as {seen[real]}: name another file"
-            )
+            raise InvalidParameter(f"the output {os.fspath(path)} is the same file as {seen[real]}: name another file")
         seen[real] = f"the output {os.fspath(path)}"
 
 

@@ -20,8 +20,17 @@ except ImportError:
     from robustness.kernels import uncompiled as cython
 
 __all__ = [
-    "articulation", "both_cores", "breadth_first", "clump", "core", "forget", "grow",
-    "mother", "smooth", "sweep", "transpose",
+    "articulation",
+    "both_cores",
+    "breadth_first",
+    "clump",
+    "core",
+    "forget",
+    "grow",
+    "mother",
+    "smooth",
+    "sweep",
+    "transpose",
 ]
 
 

@@ -305,10 +305,7 @@ class Rules:
                             value += 1
                         for x in range(words):
                             value += count(
-                                hears[j, x]
-                                & (state[P + other, x] | state[F + other, x])
-                                & ~reach[one, x]
-                                & reach[a, x]
+                                hears[j, x] & (state[P + other, x] | state[F + other, x]) & ~reach[one, x] & reach[a, x]
                             )
                         if value > gain:
                             gain, two = value, a

@@ -80,9 +80,7 @@ def tabu(
             continue
         x = outside[i] = in_indptr[i + 1] - in_indptr[i] - inside[i, a]
         t = kind[i]
-        _tell(
-            in_indptr, in_indices, rise, fall, i, a, price[t, x + 2] - price[t, x + 1], price[t, x + 1] - price[t, x]
-        )
+        _tell(in_indptr, in_indices, rise, fall, i, a, price[t, x + 2] - price[t, x + 1], price[t, x + 1] - price[t, x])
         cost += price[t, x + 1]
         if x >= r:
             exposed[a] += 1
@@ -96,8 +94,10 @@ def tabu(
                 first[i] = side[i] == 0
                 second[i] = side[i] == 1
             return True
-        if s == 1 and step % n == n - 1 and both_cores(
-            in_indptr, in_indices, out_indptr, out_indices, side, r, first, second
+        if (
+            s == 1
+            and step % n == n - 1
+            and both_cores(in_indptr, in_indices, out_indptr, out_indices, side, r, first, second)
         ):
             return True
         if count == 0:

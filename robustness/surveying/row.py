@@ -169,9 +169,7 @@ def measure(name: str, graph: Digraph, question: Question, certificates: Path | 
 
     try:
         found = determine_robustness(graph, time_limit=left(), seed=question.seed)
-        models = {
-            model: tolerance(graph, model, time_limit=left(), seed=question.seed) for model in question.models
-        }
+        models = {model: tolerance(graph, model, time_limit=left(), seed=question.seed) for model in question.models}
         table = ToleranceTable(graph, tuple(models.values()))
         standing = _standing(graph, question, found, table, left())
         certificate = "" if certificates is None else _certify(name, graph, found, certificates, left(), question.seed)
@@ -229,9 +227,7 @@ def _standing(
     return max(standings, key=STANDINGS.index)
 
 
-def _robust_enough(
-    graph: Digraph, r: int, s: int, found: RobustnessResult, left: float | None, seed: int
-) -> str:
+def _robust_enough(graph: Digraph, r: int, s: int, found: RobustnessResult, left: float | None, seed: int) -> str:
     """Say whether the network is (r,s)-robust: by what is known already, else by one more decision."""
     bounds: Bounds | None = found.bounds
     if s == 1 and bounds is not None and r <= bounds.lower.value:
@@ -244,9 +240,7 @@ def _robust_enough(
     return {Verdict.ROBUST: "passed", Verdict.NOT_ROBUST: "refuted"}.get(verdict, "undecided")
 
 
-def _certify(
-    name: str, graph: Digraph, found: RobustnessResult, folder: Path, left: float | None, seed: int
-) -> str:
+def _certify(name: str, graph: Digraph, found: RobustnessResult, folder: Path, left: float | None, seed: int) -> str:
     """Write the certificate of r*-robustness and the canonical graph it is bound to; return the certificate's path."""
     from robustness.decision.certification import certify
     from robustness.files import replace_file

@@ -46,8 +46,11 @@ def judge(decisions: Decisions, threat: ThreatModel) -> ToleranceResult:
 
 def _nobody_to_disagree(decisions: Decisions, threat: ThreatModel) -> ToleranceResult:
     reason = Reason(
-        Standing.GUARANTEED, 0, "there are fewer than two nodes", "no two normal nodes can disagree, whatever f is",
-        "none"
+        Standing.GUARANTEED,
+        0,
+        "there are fewer than two nodes",
+        "no two normal nodes can disagree, whatever f is",
+        "none",
     )
     return ToleranceResult(decisions.graph, threat, 0, None, (reason,), no_attack=0)
 

@@ -38,9 +38,7 @@ def _few_nodes(graph: Digraph, question: Question) -> Settled | None:
         return None
     bad = min(f, graph.n - 2) if two_faces else 0
     half = (graph.n - bad) // 2
-    sets = Sets(
-        frozenset(range(bad)), frozenset(range(bad, bad + half)), frozenset(range(bad + half, graph.n))
-    )
+    sets = Sets(frozenset(range(bad)), frozenset(range(bad, bad + half)), frozenset(range(bad + half, graph.n)))
     return sets, f"n <= {3 if two_faces else 2}f"
 
 

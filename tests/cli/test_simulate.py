@@ -208,7 +208,6 @@ class TestSimulate:
         path.write_bytes(b"not a certificate")
         assert run("simulate", "-", "--certificate", path, graph=COMPLETE).exit_code == ExitCode.BAD_INPUT
 
-
     def test_a_counterexample_is_saved_and_replayed(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         """No true certificate has one, so the battery is given a false claim: a cycle called (2,2)-robust."""
         monkeypatch.setattr("robustness.simulation.validate.claim_of_certificate", lambda *_: Claim(2, 2, None))

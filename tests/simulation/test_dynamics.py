@@ -59,9 +59,7 @@ class TestFormation:
         assert states.p[0].tolist() == [3.0, -1.0 + 2.3, 4.0 + 5.1]
         for k in range(30):
             p, q = states.p[k], states.q[k]
-            u = np.array(
-                [sum(p[j] - p[i] - deltas[i, j] for j in nx.path_graph(3)[i]) - 3.0 * q[i] for i in range(3)]
-            )
+            u = np.array([sum(p[j] - p[i] - deltas[i, j] for j in nx.path_graph(3)[i]) - 3.0 * q[i] for i in range(3)])
             assert np.allclose(double_integrator(p, q, u, 0.5), (states.p[k + 1], states.q[k + 1]), atol=1e-12)
 
     def test_consistent_deltas_become_offsets(self) -> None:

@@ -127,9 +127,7 @@ class TestValidation:
         seen: list[tuple[int, int]] = []
         graph = nx.complete_graph(5)
         result = rb.check_rs_robustness(graph, 3, 1)
-        report = validate_certificate(
-            graph, result, steps=120, starts_per_set=1, progress=lambda *at: seen.append(at)
-        )
+        report = validate_certificate(graph, result, steps=120, starts_per_set=1, progress=lambda *at: seen.append(at))
         assert (report.verdict, report.outcome, report.exhaustive) == ("confirmed", "agreement", True)
         assert seen[-1] == (63, 63)
         assert report.runs == 63 * 6

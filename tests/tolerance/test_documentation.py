@@ -35,10 +35,10 @@ def run(line: str) -> str:
     command, _, comment = line.partition("  # ")
     expected = int(comment) if comment else ExitCode.DONE
     words = shlex.split(command)
-    if words[:3] == ["python", "-m", "certificates"]:
+    if words[:4] == ["python", "-I", "-m", "certificates"]:
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
-            assert kernel(words[3:]) == expected, line
+            assert kernel(words[4:]) == expected, line
         return printed.getvalue()
     assert words[0] == "robustness"
     done = CliRunner().invoke(robustness, words[1:])

@@ -130,7 +130,6 @@ class TestShortcuts:
                 if not has_trap(graph.in_masks, f, False):
                     assert int(graph.in_degrees.min()) > 2 * f
 
-
     def test_robustness_settles_larger_graphs(self) -> None:
         ring = rb.Digraph.from_networkx(nx.circulant_graph(30, (1, 2, 3)))
         assert settle_trap(ring, Question(1), Limits()) == (None, "3-robust, so no trap for f = 1")
@@ -192,9 +191,7 @@ class TestLimits:
 
     def test_progress_is_told(self) -> None:
         told: list[Progress] = []
-        find_trap(
-            nx.random_regular_graph(10, 60, seed=1), 3, algorithm="search", time_limit=0.8, progress=told.append
-        )
+        find_trap(nx.random_regular_graph(10, 60, seed=1), 3, algorithm="search", time_limit=0.8, progress=told.append)
         assert told
         assert all(each.nodes >= 0 and "f = 3" in each.note for each in told)
 

@@ -214,9 +214,7 @@ class _Search:
             raise InternalError(f"local search returned sets that do not violate ({r},{s})-robustness: please report")
         return pair
 
-    def pair(
-        self, r: int, s: int, restarts: int | None
-    ) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]] | None:
+    def pair(self, r: int, s: int, restarts: int | None) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]] | None:
         """Try everything for (r,s), cheapest first."""
         if r == 1:
             found = self.closed_sets()

@@ -31,9 +31,7 @@ class Syntax:
 
 
 SYNTAXES = {
-    "3.0": Syntax(
-        "3.0", " ;", ":", " ;", "output NONE ;\nconclusion UNSAT : {} ;\nend pseudo-Boolean proof ;\n"
-    ),
+    "3.0": Syntax("3.0", " ;", ":", " ;", "output NONE ;\nconclusion UNSAT : {} ;\nend pseudo-Boolean proof ;\n"),
     "1.1": Syntax("1.1", "", ";", "", "c {}\n"),
 }
 
@@ -80,9 +78,7 @@ class Proof:
         """Derive ``sum of literals >= 1`` by reverse unit propagation and return its number."""
         return self._derive("rup " + inequality([(1, literal) for literal in literals], 1) + " ;")
 
-    def without_loss(
-        self, terms: Sequence[tuple[int, str]], degree: int, witness: Iterable[tuple[str, str]]
-    ) -> int:
+    def without_loss(self, terms: Sequence[tuple[int, str]], degree: int, witness: Iterable[tuple[str, str]]) -> int:
         """Derive an inequality by redundance, never to be deleted, and return its number.
 
         ``witness`` has ``(variable, what replaces it)``: a violating pair that breaks the inequality becomes one that
