@@ -21,6 +21,7 @@ from click.testing import CliRunner, Result
 import robustness as rb
 from cli.main import robustness
 from robustness.files import write_topology
+from robustness.reporting import Report
 from robustness.reporting.words import headline
 
 pytest.importorskip("matplotlib")
@@ -64,12 +65,12 @@ class Tags(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def made() -> rb.Report:
+def made() -> Report:
     return rb.report(networks(), gate=rb.Gate(survive=1), title="Fleet " + NASTY)
 
 
 class TestWords:
-    def test_what_a_manager_reads_first(self, made: rb.Report) -> None:
+    def test_what_a_manager_reads_first(self, made: Report) -> None:
         assert headline(made.survey, rb.Gate(survive=1)) == (
             "2 of 4 networks survive 1 malicious node under every threat model; 2 do not, each with a counterexample."
         )
@@ -89,14 +90,14 @@ class TestWords:
 
 
 class TestSafety:
-    def test_tags_nest_and_labels_are_data(self, made: rb.Report) -> None:
+    def test_tags_nest_and_labels_are_data(self, made: Report) -> None:
         page = Tags(made.html)
         assert page.open == []
         assert [tag for tag, _ in page.tags].count("script") == 1
         assert not [name for _, attributes in page.tags for name in attributes if name.startswith("on")]
         assert NASTY in page.text
 
-    def test_loads_nothing(self, made: rb.Report) -> None:
+    def test_loads_nothing(self, made: Report) -> None:
         for tag, attributes in Tags(made.html).tags:
             for name in ("src", "href", "action", "data", "xlink:href"):
                 address = attributes.get(name)
@@ -181,7 +182,7 @@ def browser() -> Iterator[Any]:
 
 class TestInABrowser:
     @pytest.fixture
-    def page(self, browser: Any, made: rb.Report, tmp_path: Path) -> Any:
+    def page(self, browser: Any, made: Report, tmp_path: Path) -> Any:
         target = tmp_path / "report.html"
         made.write(target)
         browser.set_window_size(1100, 900)
