@@ -34,6 +34,7 @@ COMMANDS: Mapping[str, str] = MappingProxyType(
         "simulate": ".simulate:command",
         "attack": ".attack:command",
         "survey": ".survey:command",
+        "report": ".report:command",
         "draw": ".draw:command",
     }
 )

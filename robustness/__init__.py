@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from robustness.figures.network import draw
     from robustness.files import read_topology, write_topology
     from robustness.graph_search import find_graph
+    from robustness.reporting import report
     from robustness.results import Bound, Bounds, RobustnessResult, Verdict, Witness
     from robustness.simulation.front import simulate
     from robustness.surveying import Gate, survey
@@ -77,6 +78,7 @@ _LATER = {
     "read_topology": "robustness.files",
     "robustness_profile": "robustness.decision.front",
     "simulate": "robustness.simulation.front",
+    "report": "robustness.reporting",
     "survey": "robustness.surveying",
     "tolerance": "robustness.threat_models",
     "write_topology": "robustness.files",
@@ -114,6 +116,7 @@ __all__ = [
     "joint_curve",
     "r_reachable_nodes",
     "read_topology",
+    "report",
     "robustness_profile",
     "simulate",
     "survey",

@@ -165,13 +165,10 @@ def test_witnesses_carry_the_users_labels(name):
 def test_a_limit_is_no_verdict(name):
     # Robust as far as anybody knows, and out of reach of every search.
     graph = Digraph.from_networkx(nx.gnp_random_graph(120, 0.5, seed=1))
-    started = time.monotonic()
-    answer = ALGORITHMS[name](graph, 28, 1, Limits(deadline=started + 0.5))
+    answer = ALGORITHMS[name](graph, 28, 1, Limits(deadline=time.monotonic() + 0.5))  # without the limit: years
     assert answer.verdict is Verdict.UNDECIDED
     assert answer.pair is None
     assert answer.stats["reason"]
-    # exhaustive and transform look at the clock between blocks, solvers between nodes of their trees.
-    assert time.monotonic() - started < 10
     with pytest.raises(rb.Undecided):
         rb.is_r_robust(graph, 28, algorithm=name, time_limit=0.2)
 

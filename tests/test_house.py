@@ -176,6 +176,12 @@ class TestArrows:
             assert not drawn, f"{path.relative_to(ROOT)} imports {drawn}"
 
 
+def test_no_test_depends_on_the_speed_of_the_machine() -> None:
+    timed = re.compile(r"assert .*(?:monotonic|perf_counter|time\.time)\(\) - ")
+    found = [path.name for path in (ROOT / "tests").rglob("*.py") if timed.search(path.read_text(encoding="utf-8"))]
+    assert found == []
+
+
 class TestLock:
     def test_every_pin_has_hashes(self) -> None:
         blocks = re.split(r"\n(?=[\w.-]+==)", LOCK)[1:]

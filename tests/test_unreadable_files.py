@@ -5,7 +5,6 @@ from __future__ import annotations
 import gzip
 import io
 import os
-import time
 import warnings
 from pathlib import Path
 
@@ -282,9 +281,8 @@ class TestHostileXml:
     @pytest.mark.parametrize("suffix", [".graphml", ".gexf"])
     @pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "utf-8-sig"])
     def test_entity_bombs_are_refused_at_once(self, suffix: str, encoding: str) -> None:
-        started = time.perf_counter()
+        # Had it been read, there would be no answer: 10^11 letters.
         assert "DOCTYPE is never read" in refusal(ENTITY_BOMB.encode(encoding), suffix)
-        assert time.perf_counter() - started < 2
 
     def test_a_declared_encoding_hides_nothing(self) -> None:
         text = '<?xml version="1.0" encoding="utf-16"?><!DOCTYPE a [<!ENTITY b "c">]><a/>'

@@ -16,7 +16,7 @@ from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter, MissingExtra, RobustnessError
 from robustness.files import read_topology
 from robustness.surveying import tables
-from robustness.surveying.row import STANDINGS, Gate, Question, Row, measure, unreadable
+from robustness.surveying.row import STANDINGS, Findings, Gate, Question, Row, measure, unreadable
 from robustness.surveying.sources import expand
 from robustness.surveying.state import Journal, key_of
 from robustness.threat_models import THREAT_MODELS
@@ -107,6 +107,7 @@ def survey(
     state: str | os.PathLike[str] | None = None,
     certificates: str | os.PathLike[str] | None = None,
     on_row: Callable[[Row, int, int], None] | None = None,
+    on_findings: Callable[[Findings], None] | None = None,
 ) -> Survey:
     """Return one row of facts for each of many networks: its size, r*, s, what f it survives, and what a gate says.
 
@@ -131,6 +132,9 @@ def survey(
         A folder for a certificate of r* of every network and the canonical graph that it is bound to.
     on_row : callable, optional
         Called with each finished row, how many are finished, and how many there are.
+    on_findings : callable, optional
+        Called with each row and the answers it was made from, in the thread that found them; not for rows of errors,
+        nor for those that a journal holds.
 
     Returns
     -------
@@ -158,7 +162,11 @@ def survey(
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
     with Journal(None if state is None else Path(state)) as journal:
-        rows = _run(networks, question, journal, folder, jobs, total_time_limit, on_row)
+
+        def row_of(name: str, graph: Any, left: float | None) -> tuple[str | None, Row]:
+            return _row(name, graph, _within(question, left), question, journal, folder, on_findings)
+
+        rows = _run(networks, row_of, journal, jobs, total_time_limit, on_row)
     missing = tuple(name for (name, _), row in zip(networks, rows, strict=True) if row is None)
     return Survey(tuple(row for row in rows if row is not None), names, notes, missing)
 
@@ -185,9 +193,8 @@ def _named(graphs: Iterable[Any] | Mapping[str, GraphLike]) -> tuple[list[tuple[
 
 def _run(
     networks: list[tuple[str, Any]],
-    question: Question,
+    row_of: Callable[[str, Any, float | None], tuple[str | None, Row]],
     journal: Journal,
-    folder: Path | None,
     jobs: int,
     total: float | None,
     on_row: Callable[[Row, int, int], None] | None,
@@ -205,7 +212,7 @@ def _run(
                 left = None if ends is None else ends - time.monotonic()
                 if left is not None and left <= 0:
                     break
-                waiting[pool.submit(_row, name, graph, _within(question, left), question, journal, folder)] = k
+                waiting[pool.submit(row_of, name, graph, left)] = k
             if not waiting:
                 return rows
             for future in wait(waiting, return_when=FIRST_COMPLETED).done:
@@ -228,7 +235,13 @@ def _within(question: Question, left: float | None) -> Question:
 
 
 def _row(
-    name: str, graph: Any, question: Question, asked: Question, journal: Journal, folder: Path | None
+    name: str,
+    graph: Any,
+    question: Question,
+    asked: Question,
+    journal: Journal,
+    folder: Path | None,
+    on_findings: Callable[[Findings], None] | None,
 ) -> tuple[str | None, Row]:
     """Return the row of one network, and its key in the journal when it is to be remembered."""
     try:
@@ -239,7 +252,10 @@ def _row(
     known = journal.get(key)
     if known is not None and (folder is None or not known.certificate or Path(known.certificate).is_file()):
         return None, known
-    row = measure(name, read, question, folder)
+    found = measure(name, read, question, folder)
+    row = found.row if isinstance(found, Findings) else found
+    if isinstance(found, Findings) and on_findings is not None:
+        on_findings(found)
     # A row that the limit for the whole cut short is not what a run with more time would say.
     was_cut = question.time_limit != asked.time_limit and not row.is_decided
     return None if row.error or was_cut else key, row

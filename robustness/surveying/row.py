@@ -14,7 +14,7 @@ from robustness.errors import InvalidParameter, RobustnessError
 from robustness.results import Bounds, RobustnessResult, Verdict
 from robustness.threat_models import THREAT_MODELS, ToleranceTable, tolerance
 
-__all__ = ["Gate", "Question", "Row", "measure", "unreadable"]
+__all__ = ["Findings", "Gate", "Question", "Row", "measure", "unreadable"]
 
 #: What a gate says of a network, from best to worst. An error is worst: the network was not even asked about.
 STANDINGS = ("passed", "undecided", "refuted", "error")
@@ -155,8 +155,18 @@ def unreadable(name: str, problem: Exception, gate: Gate) -> Row:
     return Row(name, gate="error" if _asks(gate) else "", error=" ".join(str(problem).split()))
 
 
-def measure(name: str, graph: Digraph, question: Question, certificates: Path | None = None) -> Row:
-    """Return the row of one network.
+@dataclass(frozen=True, slots=True)
+class Findings:
+    """A row and the answers it was made from."""
+
+    row: Row
+    graph: Digraph
+    robustness: RobustnessResult
+    table: ToleranceTable
+
+
+def measure(name: str, graph: Digraph, question: Question, certificates: Path | None = None) -> Row | Findings:
+    """Return what was found out about one network, or the row of an error.
 
     r* and s first, then the threat models, then the gates, all within one time limit; what it leaves undecided says so
     in the row. With ``certificates``, a folder, the certificate that the network is r*-robust is written there.
@@ -177,7 +187,7 @@ def measure(name: str, graph: Digraph, question: Question, certificates: Path | 
         return unreadable(name, problem, question.gate)
     bounds = found.bounds
     is_known = found.verdict is Verdict.DETERMINED
-    return Row(
+    row = Row(
         name,
         graph.n,
         graph.arc_count,
@@ -194,6 +204,7 @@ def measure(name: str, graph: Digraph, question: Question, certificates: Path | 
         certificate,
         time.monotonic() - started,
     )
+    return Findings(row, graph, found, table)
 
 
 def _greatest(found: RobustnessResult) -> int:

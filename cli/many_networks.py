@@ -1,0 +1,221 @@
+"""What the commands about many networks share: which networks, what is asked of each, and how far one is."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import wraps
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TextIO
+
+import click
+
+from .exit_codes import ExitCode
+from .interruption import interruptibly
+from .options import jobs_option, seed_option, timeout_option
+from .output import Console
+from .tolerance import MODELS
+
+if TYPE_CHECKING:
+    from robustness.surveying import Gate, Row, Survey
+    from robustness.surveying.row import Findings
+
+__all__ = ["ManyNetworks", "exit_code", "many_networks_options", "run_survey"]
+
+_OPTIONS: tuple[Callable[[Any], Any], ...] = (
+    click.argument("paths", nargs=-1, metavar="PATH..."),
+    click.option(
+        "--from",
+        "listed",
+        type=click.File("r", encoding="utf-8"),
+        metavar="FILE",
+        help="A file with one PATH a line (# begins a comment); - is standard input.",
+    ),
+    click.option("-r", type=click.IntRange(min=0), help="A gate: every network is (R,S)-robust."),
+    click.option("-s", type=click.IntRange(min=1), default=None, help="With -r; 1 unless given."),
+    click.option(
+        "--require", "survive", type=click.IntRange(min=0), metavar="F", help="A gate: F malicious are survived."
+    ),
+    click.option(
+        "--model",
+        "models",
+        type=click.Choice(MODELS),
+        multiple=True,
+        help="Threat models to look at; all unless given.",
+    ),
+    click.option("--no-models", is_flag=True, help="Only r* and s: no threat model is looked at."),
+    click.option(
+        "--certificates",
+        type=click.Path(file_okay=False, path_type=Path),
+        metavar="DIR",
+        help="Write a certificate of r* for every network.",
+    ),
+    click.option(
+        "--total-timeout",
+        type=click.FloatRange(min=0, min_open=True),
+        metavar="SECONDS",
+        help="For all networks together.",
+    ),
+    timeout_option,
+    jobs_option,
+    seed_option,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class ManyNetworks:
+    """Which networks a command is about, and what is asked of each.
+
+    Attributes
+    ----------
+    paths : tuple of str
+    gate : Gate
+    models : tuple of str
+    certificates : Path or None
+    timeout, total_timeout : float or None
+    jobs, seed : int
+    """
+
+    paths: tuple[str, ...]
+    gate: Gate
+    models: tuple[str, ...]
+    certificates: Path | None
+    timeout: float | None
+    total_timeout: float | None
+    jobs: int
+    seed: int
+
+
+def many_networks_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options of :class:`ManyNetworks` to a command, which gets one in the keyword ``networks``."""
+
+    @wraps(command)
+    def with_networks(
+        *arguments: Any,
+        paths: tuple[str, ...],
+        listed: TextIO | None,
+        r: int | None,
+        s: int | None,
+        survive: int | None,
+        models: tuple[str, ...],
+        no_models: bool,
+        certificates: Path | None,
+        total_timeout: float | None,
+        timeout: float | None,
+        jobs: int,
+        seed: int,
+        **others: Any,
+    ) -> Any:
+        if s is not None and r is None:
+            raise click.UsageError("-s says how many nodes go with -r: give -r as well.")
+        if no_models and (models or survive is not None):
+            raise click.UsageError(
+                "--no-models looks at none: leave out --model and --require, or leave out --no-models."
+            )
+        wanted = (*paths, *_lines_of(listed))
+        if not wanted:
+            raise click.UsageError("name a file, a folder, a pattern or topohub names, or a list of them with --from.")
+        from robustness.surveying import Gate
+
+        gate = Gate(r, 1 if s is None else s, survive)
+        looked_at = () if no_models else models or MODELS
+        networks = ManyNetworks(wanted, gate, looked_at, certificates, timeout, total_timeout, jobs, seed)
+        return command(*arguments, networks=networks, **others)
+
+    for option in reversed(_OPTIONS):
+        with_networks = option(with_networks)
+    return with_networks
+
+
+def _lines_of(stream: TextIO | None) -> list[str]:
+    """Return the paths that a list names."""
+    if stream is None:
+        return []
+    try:
+        lines = [line.strip() for line in stream]
+    except UnicodeDecodeError as problem:
+        raise click.UsageError(f"--from: {stream.name} is no UTF-8 text: {problem.reason}") from None
+    return [line for line in lines if line and not line.startswith("#")]
+
+
+def run_survey(
+    console: Console,
+    networks: ManyNetworks,
+    *,
+    state: Path | None = None,
+    on_findings: Callable[[Findings], None] | None = None,
+) -> tuple[Survey, bool]:
+    """Return the survey of the networks and whether it was interrupted; then it holds the rows that were finished."""
+    from robustness.surveying import Survey, survey
+
+    line = _Line(console)
+
+    def work() -> Survey:
+        return survey(
+            networks.paths,
+            models=networks.models,
+            gate=networks.gate,
+            time_limit=networks.timeout,
+            total_time_limit=networks.total_timeout,
+            jobs=networks.jobs,
+            seed=networks.seed,
+            state=state,
+            certificates=networks.certificates,
+            on_row=line.note,
+            on_findings=on_findings,
+        )
+
+    try:
+        return interruptibly(work, None, line.tick), False
+    except KeyboardInterrupt:
+        return Survey(tuple(line.rows), networks.models), True
+    finally:
+        line.wipe()
+
+
+def exit_code(console: Console, found: Survey, is_interrupted: bool, written: Iterable[str]) -> ExitCode:
+    """Return the exit code of a survey, and say what was left out and what was written."""
+    for line in written:
+        console.talk(line)
+    if is_interrupted:
+        console.error("interrupted: the rows that are shown hold, nothing is claimed about the other networks")
+        return ExitCode.INTERRUPTED
+    if found.missing:
+        console.talk(f"undecided: the time limit left {len(found.missing)} networks unasked")
+    return {
+        "passed": ExitCode.DONE,
+        "undecided": ExitCode.UNDECIDED,
+        "refuted": ExitCode.REFUTED,
+        "error": ExitCode.BAD_INPUT,
+    }[found.worst]
+
+
+class _Line:
+    """The progress of a survey on a terminal: how many networks are done, which are left, and the time."""
+
+    def __init__(self, console: Console) -> None:
+        is_terminal = sys.stderr is not None and sys.stderr.isatty()
+        self._is_shown = is_terminal and not console.is_quiet
+        self._started = time.monotonic()
+        self._text = "reading"
+        self.rows: list[Row] = []
+
+    def note(self, row: Row, finished: int, of: int) -> None:
+        """Remember that one more row is finished."""
+        self.rows.append(row)
+        spent = time.monotonic() - self._started
+        left = spent / finished * (of - finished)
+        self._text = f"{finished} of {of} networks, about {left:.0f} s left, last {row.network}"
+
+    def tick(self) -> None:
+        """Draw the line anew."""
+        if self._is_shown:
+            spent = time.monotonic() - self._started
+            click.echo(f"\r\x1b[K{f'{spent:.0f} s, {self._text}'[:100]}", err=True, nl=False)
+
+    def wipe(self) -> None:
+        """Take the line away."""
+        if self._is_shown:
+            click.echo("\r\x1b[K", err=True, nl=False)

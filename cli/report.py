@@ -1,0 +1,52 @@
+"""``robustness report``: one self-contained page about many networks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from .many_networks import ManyNetworks, exit_code, many_networks_options, run_survey
+from .options import talk_options
+from .output import Console, pass_console
+
+if TYPE_CHECKING:
+    from robustness.surveying.row import Findings
+
+__all__ = ["command"]
+
+
+@click.command("report")
+@many_networks_options
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="FILE.html",
+    help="For the page.",
+)
+@click.option("--title", default="Robustness report", show_default=True, help="The heading of the page.")
+@click.option("--no-pictures", is_flag=True, help="Neither networks nor attacks are drawn: a smaller page.")
+@talk_options
+@pass_console
+@click.pass_context
+def command(
+    ctx: click.Context, console: Console, networks: ManyNetworks, output: Path, title: str, no_pictures: bool
+) -> None:
+    """Write one HTML page about many networks, for somebody who will not open a terminal.
+
+    PATH is as for survey. The page is one file that loads nothing: the verdict in words, the networks as rows to sort,
+    and for each its picture with the weakest pair, what it survives, the attack that splits it, to play, and how to
+    verify its certificate. The exit code is that of survey: of the worst network.
+    """
+    from robustness.files.writing import require_different_files
+    from robustness.reporting.front import report_of, require_drawing
+
+    require_drawing(not no_pictures)
+    require_different_files(networks.paths, [output])
+    kept: list[Findings] = []
+    found, is_interrupted = run_survey(console, networks, on_findings=kept.append)
+    report_of(found, tuple(kept), title=title, gate=networks.gate, pictures=not no_pictures).write(output)
+    ctx.exit(exit_code(console, found, is_interrupted, [f"wrote {output} ({len(found)} networks)"]))

@@ -1,0 +1,135 @@
+"""The front: ``report``, one self-contained page about many networks."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from robustness.digraph import GraphLike
+from robustness.errors import InvalidParameter
+from robustness.figures.saving import new_figure
+from robustness.files.writing import replace_file
+from robustness.reporting import page
+from robustness.reporting.section import section_of
+from robustness.surveying import Gate, Row, Survey, survey
+from robustness.surveying.row import Findings
+
+__all__ = ["Report", "report", "report_of", "require_drawing"]
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """A page about many networks.
+
+    Attributes
+    ----------
+    survey : Survey
+        The rows that the page shows.
+    html : str
+        The page: everything is in it, and it asks the network for nothing.
+    """
+
+    survey: Survey
+    html: str
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Write the page to a file, whole or not at all."""
+        replace_file(path, self.html.encode("utf-8"))
+
+    def _repr_html_(self) -> str:
+        return self.survey._repr_html_()
+
+
+def report(
+    graphs: Iterable[Any] | Mapping[str, GraphLike],
+    *,
+    title: str = "Robustness report",
+    models: Iterable[str] | None = None,
+    gate: Gate | None = None,
+    pictures: bool = True,
+    time_limit: float | None = None,
+    total_time_limit: float | None = None,
+    jobs: int = 1,
+    seed: int = 0,
+    certificates: str | os.PathLike[str] | None = None,
+    on_row: Callable[[Row, int, int], None] | None = None,
+) -> Report:
+    """Return one self-contained HTML page about many networks: verdicts in words, a table to sort, and one part each.
+
+    The part of a network has its picture with the weakest pair, what it survives under each threat model, the attack
+    on the smallest f that is refuted as a film, and the digests to verify certificates by.
+
+    Parameters
+    ----------
+    graphs, models, gate, time_limit, total_time_limit, jobs, seed, certificates, on_row
+        As for :func:`robustness.survey`.
+    title : str
+        The heading of the page.
+    pictures : bool
+        Whether networks are drawn (those of up to 80 nodes) and attacks are played.
+
+    Returns
+    -------
+    Report
+
+    Raises
+    ------
+    MissingExtra
+        When pictures are asked for and matplotlib is not installed.
+    InvalidParameter, UnreadableTopology
+        As :func:`robustness.survey` does.
+
+    >>> import networkx as nx
+    >>> made = report({"wheel": nx.wheel_graph(5)}, models=["malicious"], pictures=False)
+    >>> made.survey.rows[0].r, "survives 1 malicious node" in made.html
+    (2, True)
+    """
+    kept: list[Findings] = []
+    require_drawing(pictures)
+    found = survey(
+        graphs,
+        models=models,
+        gate=gate,
+        time_limit=time_limit,
+        total_time_limit=total_time_limit,
+        jobs=jobs,
+        seed=seed,
+        certificates=certificates,
+        on_row=on_row,
+        on_findings=kept.append,
+    )
+    return report_of(found, kept, title=title, gate=gate, pictures=pictures)
+
+
+def report_of(
+    found: Survey,
+    findings: Iterable[Findings],
+    *,
+    title: str = "Robustness report",
+    gate: Gate | None = None,
+    pictures: bool = True,
+) -> Report:
+    """Return the page about a survey that is there already.
+
+    Parameters
+    ----------
+    found : Survey
+        Its rows are shown.
+    findings : iterable of Findings
+        What ``survey(..., on_findings=...)`` handed out. A row without findings is shown without a picture.
+    title, gate, pictures
+        As for :func:`report`.
+    """
+    if not isinstance(title, str):
+        raise InvalidParameter(f"title is text, not {title!r}")
+    require_drawing(pictures)
+    sections = {each.row.network: section_of(each, with_pictures=pictures) for each in findings}
+    return Report(found, page.html(title, found, gate or Gate(), sections))
+
+
+def require_drawing(pictures: bool) -> None:
+    """Say what is missing before the work is done."""
+    if pictures:
+        new_figure(1, 1)

@@ -1,0 +1,143 @@
+"""The page itself: words, table and parts as HTML. Every name is data and escaped; nothing is loaded from elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from html import escape
+from importlib.resources import files
+from shlex import quote
+
+from robustness.reporting.film import film_html
+from robustness.reporting.section import Section, as_data_address
+from robustness.reporting.words import headline, in_words
+from robustness.surveying import Gate, Row, Survey
+from robustness.surveying.tables import cells
+
+__all__ = ["html"]
+
+#: What a browser may do with the page: run its own script and style, show its own pictures, and ask for nothing.
+_POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:"
+
+
+def html(title: str, survey: Survey, gate: Gate, sections: Mapping[str, Section]) -> str:
+    """Return the page.
+
+    Parameters
+    ----------
+    title : str
+    survey : Survey
+        Its rows become the table.
+    gate : Gate
+        What was asked of every network.
+    sections : mapping from name to Section
+        What is shown beside the rows; a row without one is shown by its facts alone.
+    """
+    parts = "".join(
+        _part(k, row, sections.get(row.network, Section()), survey.models) for k, row in enumerate(survey.rows)
+    )
+    notes = [*survey.notes, *(f"{name}: the time limit came first; nothing is claimed" for name in survey.missing)]
+    listed = "".join(f"<li>{escape(note)}</li>" for note in notes)
+    return (
+        "<!DOCTYPE html>\n<html lang='en'>\n<head>\n<meta charset='utf-8'>\n"
+        "<meta name='viewport' content='width=device-width, initial-scale=1'>\n"
+        f"<meta http-equiv='Content-Security-Policy' content=\"{_POLICY}\">\n"
+        f"<title>{escape(title)}</title>\n<link rel='icon' href='data:,'>\n"
+        f"<style>\n{_resource('page.css')}</style>\n</head>\n<body>\n<main>\n"
+        f"<h1>{escape(title)}</h1>\n<p class='verdict {survey.worst}'>{escape(headline(survey, gate))}</p>\n"
+        f"{_table(survey, sections)}\n{parts}"
+        + (f"<h2>Notes</h2>\n<ul>{listed}</ul>\n" if notes else "")
+        + f"{_FOOT}</main>\n<script>\n{_resource('page.js')}</script>\n</body>\n</html>\n"
+    )
+
+
+_FOOT = (
+    "<p class='faint'>Every answer is exact or says that a limit came first. <i>(r,s)-robust</i>: of any two disjoint "
+    "sets of nodes, one has enough nodes that each hear r nodes outside their set. A network survives f when resilient "
+    "consensus reaches agreement whatever f malicious nodes do; the models say how many may lie where, and "
+    "whether they may tell each neighbour another lie.</p>\n"
+)
+
+
+def _resource(name: str) -> str:
+    return files("robustness.reporting").joinpath(name).read_text(encoding="utf-8")
+
+
+def _table(survey: Survey, sections: Mapping[str, Section]) -> str:
+    """Return the table, with what sorts and filters it."""
+    head, *body = cells(survey.rows, survey.models)
+    has_gate = "gate" in head
+    has_pictures = any(section.picture for section in sections.values())
+    names = "".join(_head(name) for name in head) + ("<th>picture</th>" if has_pictures else "")
+    lines = "".join(
+        _line(k, row, line, head, sections.get(row.network, Section()), has_pictures)
+        for k, (row, line) in enumerate(zip(survey.rows, body, strict=True))
+    )
+    failing = "<label><input type='checkbox' id='failing'> only what does not pass</label>" if has_gate else ""
+    return (
+        "<div class='tools'><label>find <input type='search' id='words'></label>"
+        f"{failing}<span id='count' class='faint' role='status'>{len(body)} of {len(body)} shown</span></div>\n"
+        "<div class='scroll' tabindex='0' role='region' aria-label='networks'>"
+        f"<table class='networks'><thead><tr>{names}</tr></thead><tbody>{lines}</tbody></table></div>"
+    )
+
+
+def _head(name: str) -> str:
+    shown = "comment" if name == "note" else name
+    return f"<th{_class(name)} scope='col'><button type='button'>{escape(shown)}</button></th>"
+
+
+def _class(name: str) -> str:
+    return "" if name in ("network", "gate", "note") else " class='number'"
+
+
+def _line(k: int, row: Row, line: Sequence[str], head: Sequence[str], section: Section, has_pictures: bool) -> str:
+    shown = []
+    for name, cell in zip(head, line, strict=True):
+        value = escape(cell.lstrip(">=").partition("..")[0] if cell != "?" else "", quote=True)
+        if name == "network":
+            shown.append(
+                f"<td class='name' data-value='{escape(cell, quote=True)}'><a href='#n{k}'>{escape(cell)}</a></td>"
+            )
+        elif name == "gate":
+            shown.append(f"<td class='{escape(cell, quote=True)}' data-value='{value}'>{escape(cell)}</td>")
+        else:
+            shown.append(f"<td{_class(name)} data-value='{value}'>{escape(cell)}</td>")
+    if has_pictures:
+        image = f"<img class='thumb' alt='' src='{as_data_address(section.picture)}'>" if section.picture else ""
+        shown.append(f"<td>{image}</td>")
+    return f"<tr data-gate='{escape(row.gate, quote=True)}' data-part='n{k}'>{''.join(shown)}</tr>"
+
+
+def _part(k: int, row: Row, section: Section, models: Sequence[str]) -> str:
+    """Return what is known about one network, to unfold."""
+    picture = (
+        f"<figure><img alt='The network{', its weakest pair marked' if row.weakest else ''}' "
+        f"src='{as_data_address(section.picture)}'></figure>"
+        if section.picture
+        else ""
+    )
+    sentences = "".join(f"<dt>{escape(name)}</dt><dd>{escape(text)}</dd>" for name, text in section.models)
+    tolerance = f"<h3>What it survives</h3><dl>{sentences}</dl>" if sentences else ""
+    film = ""
+    if section.film is not None:
+        played = film_html(section.film).replace("{clip}", f"clip{k}")
+        told = f"{escape(section.film.claim)}. {escape(section.film.story)}."
+        film = f"<h3>The attack that splits it</h3><p>{told}</p>{played}"
+    return (
+        f"<details class='network' id='n{k}'><summary><h2>{escape(row.network)}</h2></summary>"
+        f"<p>{escape(in_words(row, models))}</p>{picture}{tolerance}{film}{_evidence(row, section)}</details>\n"
+    )
+
+
+def _evidence(row: Row, section: Section) -> str:
+    if not row.sha256:
+        return ""
+    rows = [("SHA-256 of the canonical graph", row.sha256)]
+    command = ""
+    if row.certificate:
+        rows += [("certificate", row.certificate), ("SHA-256 of the certificate", section.certificate_digest)]
+        graph = row.certificate.removesuffix(f"-{row.r}-robust.cert") + ".graph"
+        words = f"python -I -m certificates verify {quote(graph)} {quote(row.certificate)} --expect robust -r {row.r}"
+        command = f"<p>To verify it without the solver: <code>{escape(words)}</code></p>"
+    listed = "".join(f"<dt>{escape(name)}</dt><dd><code>{escape(text)}</code></dd>" for name, text in rows)
+    return f"<h3>Evidence</h3><dl>{listed}</dl>{command}"

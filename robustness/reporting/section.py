@@ -1,0 +1,134 @@
+"""What a page shows of one network: a picture, the models' sentences, and an attack to play."""
+
+from __future__ import annotations
+
+import io
+from base64 import b64encode
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from robustness.digraph import Digraph
+from robustness.figures.network import draw
+from robustness.figures.saving import new_figure
+from robustness.natural_order import in_natural_order
+from robustness.simulation.attacks import Attack
+from robustness.surveying.row import Findings
+from robustness.threat_models import ToleranceTable
+
+__all__ = ["Film", "Section", "section_of"]
+
+#: Larger networks are not drawn: a picture of them says little and takes long.
+_LARGEST = 80
+
+#: How many steps of an attack are played. What is held apart does not move at all, so a short film says it.
+_STEPS = 40
+
+
+@dataclass(frozen=True, slots=True)
+class Film:
+    """An attack, step by step.
+
+    Attributes
+    ----------
+    story : str
+        The attack in words.
+    claim : str
+        What is shown, for the heading.
+    lines : tuple of dict
+        For each node its name, the ``group`` it belongs to (``"S1"``, ``"S2"``, ``"M"`` or ``"rest"``) and its
+        ``values``, one for each step.
+    """
+
+    story: str
+    claim: str
+    lines: tuple[dict[str, Any], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """What is shown of one network beside its row.
+
+    Attributes
+    ----------
+    picture : bytes
+        An SVG document, or nothing.
+    models : tuple of (str, str)
+        Each threat model and one sentence about it.
+    film : Film or None
+    certificate_digest : str
+        SHA-256 of the certificate's file, empty when none was written.
+    """
+
+    picture: bytes = b""
+    models: tuple[tuple[str, str], ...] = ()
+    film: Film | None = None
+    certificate_digest: str = field(default="")
+
+
+def section_of(findings: Findings, *, with_pictures: bool) -> Section:
+    """Return what is shown of a network.
+
+    Parameters
+    ----------
+    findings : Findings
+        What its row was made from.
+    with_pictures : bool
+        Whether it is drawn, and an attack played, when it has at most 80 nodes.
+    """
+    row, graph = findings.row, findings.graph
+    digest = sha256(Path(row.certificate).read_bytes()).hexdigest() if row.certificate else ""
+    models = tuple((result.model, result.summary()) for result in findings.table.results)
+    if not with_pictures or not 1 <= graph.n <= _LARGEST:
+        return Section(models=models, certificate_digest=digest)
+    return Section(_picture(graph, row.weakest, row.network), models, _film(findings.table), digest)
+
+
+def _picture(graph: Digraph, weakest: Mapping[str, Any] | None, name: str) -> bytes:
+    """Return the network as SVG, the weakest pair marked, where the file places its nodes if it does."""
+    from matplotlib import rc_context
+
+    from robustness.figures.positions import positions_of_file
+
+    figure = new_figure(7.2, 4.2)
+    pair = None if weakest is None else (weakest["S1"], weakest["S2"])
+    draw(graph, pair, pos=positions_of_file(name, graph), ax=figure.subplots())
+    stream = io.BytesIO()
+    with rc_context({"svg.hashsalt": "robustness", "svg.fonttype": "none", "font.family": "sans-serif"}):
+        figure.savefig(stream, format="svg", metadata={"Date": None})
+    return stream.getvalue()
+
+
+def _film(table: ToleranceTable) -> Film | None:
+    """Return the attack with the fewest liars, played; None when none is known."""
+    attacks = [(result.attack, result.model) for result in table.results]
+    known = [(attack.f, k) for k, (attack, _) in enumerate(attacks) if attack is not None]
+    if not known:
+        return None
+    attack, model = attacks[min(known)[1]]
+    return None if attack is None else _played(attack, model)
+
+
+def _played(attack: Attack, model: str) -> Film:
+    outcome = attack.run(_STEPS, record=True)
+    trajectory = outcome.trajectory
+    values = [] if trajectory is None else trajectory.p.T.tolist()
+    groups = {"M": attack.malicious, "S1": attack.S1, "S2": attack.S2}
+    by_label = dict(zip(attack.graph.labels, values, strict=True))
+    lines = tuple(
+        {
+            "name": str(label),
+            "group": next((name for name, members in groups.items() if label in members), "rest"),
+            "values": [round(value, 3) for value in by_label[label]],
+        }
+        for label in in_natural_order(by_label)
+    )
+    liars = f"{len(attack.malicious)} malicious node{'s' * (len(attack.malicious) != 1)}"
+    return Film(attack.story(), f"f = {attack.f} under the model {model}: {liars}", lines)
+
+
+def as_data_address(picture: bytes) -> str:
+    """Return an SVG document as an address that an ``img`` takes; scripts in an image never run."""
+    return "data:image/svg+xml;base64," + b64encode(picture).decode("ascii")

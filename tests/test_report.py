@@ -1,0 +1,258 @@
+"""The page about many networks: its words, that it loads nothing and runs no label, and what it does in a browser."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import networkx as nx
+import pytest
+from click.testing import CliRunner, Result
+
+import robustness as rb
+from cli.main import robustness
+from robustness.files import write_topology
+from robustness.reporting import Report
+from robustness.reporting.words import headline
+
+pytest.importorskip("matplotlib")
+
+NASTY = "</script><script>document.title='taken'</script><img src=x onerror=\"document.title='taken'\">'\"&"
+
+
+def networks() -> dict[str, nx.Graph]:
+    wheel = nx.relabel_nodes(nx.wheel_graph(5), {0: NASTY, 1: "n10", 2: "n2"})
+    return {
+        "wheel" + NASTY: wheel,
+        "complete": nx.complete_graph(7),
+        "path": nx.path_graph(12),
+        "one": nx.path_graph(1),
+    }
+
+
+class Tags(HTMLParser):
+    """Every tag of a page with its attributes, and which of them are not closed in order."""
+
+    VOID = frozenset({"meta", "link", "input", "img", "br", "line", "rect", "polyline"})
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.open: list[str] = []
+        self.text = ""
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag not in self.VOID:
+            assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
+
+
+@pytest.fixture(scope="module")
+def made() -> Report:
+    return rb.report(networks(), gate=rb.Gate(survive=1), title="Fleet " + NASTY)
+
+
+class TestWords:
+    def test_what_a_manager_reads_first(self, made: Report) -> None:
+        assert headline(made.survey, rb.Gate(survive=1)) == (
+            "2 of 4 networks survive 1 malicious node under every threat model; 2 do not, each with a counterexample."
+        )
+        assert "A network of 7 nodes and 21 links." in Tags(made.html).text
+
+    def test_all_pass(self) -> None:
+        graphs = {"a": nx.complete_graph(7), "b": nx.complete_graph(8)}
+        text = Tags(rb.report(graphs, gate=rb.Gate(r=3), models=["malicious"], pictures=False).html).text
+        assert "All 2 networks are (3,1)-robust." in text
+
+    def test_a_limit_and_a_file_that_cannot_be_read_are_said(self, tmp_path: Path) -> None:
+        (tmp_path / "broken.json").write_text("{")
+        made = rb.report([tmp_path / "broken.json"], gate=rb.Gate(survive=1), pictures=False)
+        assert "0 of 1 networks survive 1 malicious node under every threat model; 1 could not be read." in made.html
+        cut = rb.report({"a": nx.complete_graph(4)}, total_time_limit=1e-9, gate=rb.Gate(survive=1), pictures=False)
+        assert "1 were not decided within the limit: nothing is claimed about them" in cut.html
+
+
+class TestSafety:
+    def test_tags_nest_and_labels_are_data(self, made: Report) -> None:
+        page = Tags(made.html)
+        assert page.open == []
+        assert [tag for tag, _ in page.tags].count("script") == 1
+        assert not [name for _, attributes in page.tags for name in attributes if name.startswith("on")]
+        assert NASTY in page.text
+
+    def test_loads_nothing(self, made: Report) -> None:
+        for tag, attributes in Tags(made.html).tags:
+            for name in ("src", "href", "action", "data", "xlink:href"):
+                address = attributes.get(name)
+                assert address is None or address.startswith(("#", "data:")), (tag, address)
+        assert re.findall(r"url\((?!#)|@import|https?://", made.html) == []
+
+    def test_the_same_networks_give_the_same_page(self) -> None:
+        graphs = {"wheel": nx.wheel_graph(5)}
+        first, second = (re.sub(r"data-value='[\d.]+'>[\d.]+<", "", rb.report(graphs).html) for _ in range(2))
+        assert first == second
+
+
+class TestCommand:
+    @pytest.fixture
+    def folder(self, tmp_path: Path) -> Path:
+        for name, graph in (("wheel", nx.wheel_graph(5)), ("complete", nx.complete_graph(7))):
+            write_topology(graph, tmp_path / f"{name}.json")
+        return tmp_path
+
+    def run(self, *arguments: object) -> Result:
+        return CliRunner().invoke(robustness, ["report", *map(str, arguments)])
+
+    def test_page_certificates_and_the_worst_exit_code(self, folder: Path) -> None:
+        page = folder / "out" / "report.html"
+        page.parent.mkdir()
+        done = self.run(folder, "-o", page, "--require", 1, "--certificates", folder / "out" / "certs")
+        assert done.exit_code == 10, done.output
+        text = page.read_text(encoding="utf-8")
+        (command,) = {line for line in re.findall(r"<code>(python -I -m [^<]*)</code>", text) if "complete" in line}
+        words = command.replace("&#x27;", "'").split()
+        checked = subprocess.run([sys.executable, *words[1:]], capture_output=True, text=True, check=False)
+        assert checked.returncode == 0, checked.stderr
+        assert self.run(folder / "complete.json", "-o", page, "--require", 1, "--no-pictures").exit_code == 0
+
+    def test_no_page_over_an_input(self, folder: Path) -> None:
+        done = self.run(folder / "wheel.json", "-o", folder / "wheel.json")
+        assert done.exit_code == 2
+        assert rb.read_topology(folder / "wheel.json").n == 5
+
+    def test_ctrl_c_leaves_a_page_with_what_is_finished(self, folder: Path) -> None:
+        write_topology(nx.gnp_random_graph(90, 0.5, seed=1), folder / "hard.json")
+        page = folder / "page.html"
+        names = [folder / "complete.json", folder / "hard.json"]
+        program = [sys.executable, "-m", "cli", "report", *names, "-o", page, "--no-pictures", "--certificates", folder]
+        process = subprocess.Popen(
+            [*map(str, program)],
+            stderr=subprocess.PIPE,
+            text=True,
+            env={**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parent.parent)},
+        )
+        while not list(folder.glob("complete*.cert")):  # the other one takes hours
+            assert process.poll() is None
+            time.sleep(0.1)
+        process.send_signal(signal.SIGINT)
+        _, talk = process.communicate(timeout=60)
+        assert process.returncode == 130, talk
+        assert "interrupted" in talk
+        assert "complete.json" in page.read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Debian's Chromium without a network, or a reason to skip."""
+    selenium = pytest.importorskip("selenium.webdriver")
+    binary, driver = shutil.which("chromium"), shutil.which("chromedriver")
+    if binary is None or driver is None:
+        pytest.skip("no chromium and chromedriver on the PATH: the page is not tried in a browser")
+    options = selenium.ChromeOptions()
+    options.binary_location = binary
+    for flag in ("headless=new", "no-sandbox", "disable-gpu", "disable-quic", "disable-background-networking"):
+        options.add_argument(f"--{flag}")
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    opened = selenium.Chrome(options=options, service=selenium.ChromeService(driver))
+    opened.execute_cdp_cmd("Network.enable", {})
+    opened.execute_cdp_cmd(
+        "Network.emulateNetworkConditions",
+        {"offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0},
+    )
+    yield opened
+    opened.quit()
+
+
+class TestInABrowser:
+    @pytest.fixture
+    def page(self, browser: Any, made: Report, tmp_path: Path) -> Any:
+        target = tmp_path / "report.html"
+        made.write(target)
+        browser.set_window_size(1100, 900)
+        browser.get(target.as_uri())
+        yield browser
+        assert browser.title == "Fleet " + NASTY
+        assert [entry["message"] for entry in browser.get_log("browser")] == []
+
+    @staticmethod
+    def names(page: Any) -> list[str]:
+        cells = page.find_elements("css selector", "table.networks tbody td.name")
+        return [cell.text for cell in cells if cell.is_displayed()]
+
+    def test_sorting(self, page: Any) -> None:
+        head = page.find_elements("css selector", "table.networks th button")
+        by_name = {button.text.split()[0]: button for button in head}
+        by_name["nodes"].click()
+        assert [name.split("<")[0] for name in self.names(page)] == ["one", "wheel", "complete", "path"]
+        by_name["nodes"].click()
+        assert [name.split("<")[0] for name in self.names(page)] == ["path", "complete", "wheel", "one"]
+        sorted_head = page.find_element("css selector", "th[aria-sort]")
+        assert sorted_head.get_attribute("aria-sort") == "descending"
+
+    def test_finding(self, page: Any) -> None:
+        page.find_element("css selector", "#words").send_keys("compl")
+        assert self.names(page) == ["complete"]
+        assert page.find_element("css selector", "#count").text == "1 of 4 shown"
+
+    def test_only_what_does_not_pass(self, page: Any) -> None:
+        page.find_element("css selector", "#failing").click()
+        assert [name.split("<")[0] for name in self.names(page)] == ["wheel", "path"]
+
+    def test_a_name_opens_its_part(self, page: Any) -> None:
+        page.find_element("link text", "complete").click()
+        (part,) = [part for part in page.find_elements("css selector", "details.network") if part.get_attribute("open")]
+        assert part.find_element("css selector", "h2").text == "complete"
+        picture = part.find_element("css selector", "figure img")
+        assert page.execute_script("return arguments[0].naturalWidth", picture) > 100
+
+    def test_playing_and_pausing_with_the_keyboard(self, page: Any) -> None:
+        page.execute_script("document.querySelectorAll('details').forEach((part) => { part.open = true; })")
+        film = page.find_element("css selector", ".film")
+        button, slider = film.find_element("css selector", "button"), film.find_element("css selector", "input")
+        curtain = film.find_element("css selector", ".shown")
+        full = float(curtain.get_attribute("width"))
+        button.send_keys(" ")
+        assert button.text == "Pause"
+        button.send_keys(" ")
+        assert button.text == "Play"
+        assert float(curtain.get_attribute("width")) < full
+        slider.send_keys("\ue010")  # End
+        assert float(curtain.get_attribute("width")) == full
+
+    def test_a_narrow_screen_does_not_scroll_sideways(self, page: Any) -> None:
+        page.execute_cdp_cmd(
+            "Emulation.setDeviceMetricsOverride", {"width": 360, "height": 740, "deviceScaleFactor": 1, "mobile": True}
+        )
+        page.execute_script("document.querySelectorAll('details').forEach((part) => { part.open = true; })")
+        assert page.execute_script("return document.documentElement.scrollWidth") <= 360
+        page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+    @pytest.mark.parametrize("scheme", ["light", "dark"])
+    def test_letters_stand_out_from_the_ground(self, page: Any, scheme: str) -> None:
+        page.execute_cdp_cmd(
+            "Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]}
+        )
+        style = "getComputedStyle(document.querySelector('p.verdict'))"
+        ink, ground = (
+            sum(map(int, re.findall(r"\d+", page.execute_script(f"return {style}.{name}"))[:3]))
+            for name in ("color", "backgroundColor")
+        )
+        assert abs(ink - ground) > 450
+        assert (ground > 400) == (scheme == "light")
