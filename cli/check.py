@@ -241,10 +241,9 @@ def _stopped(
 
 
 def _trivial_bounds(graph: Digraph) -> Bounds:
-    from robustness.definitions import largest_conceivable_r
-    from robustness.results import Bound, Bounds
+    from robustness.results import Bounds
 
-    return Bounds(Bound(0, "every graph is 0-robust"), Bound(largest_conceivable_r(graph.n), "r* <= ceil(n/2)"))
+    return Bounds.trivial(graph)
 
 
 def _lines(report: Report, source: str, *, whole: bool) -> Iterator[str]:

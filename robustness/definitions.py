@@ -22,8 +22,16 @@ from collections.abc import Hashable, Iterable, Set
 from certificates.graph import Label
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
+from robustness.evidence import Pair
 
-__all__ = ["is_violation", "largest_conceivable_r", "r_reachable_ids", "r_reachable_nodes", "require_r_and_s"]
+__all__ = [
+    "half_split",
+    "is_violation",
+    "largest_conceivable_r",
+    "r_reachable_ids",
+    "r_reachable_nodes",
+    "require_r_and_s",
+]
 
 
 def r_reachable_ids(graph: Digraph, members: Set[int], r: int) -> frozenset[int]:
@@ -42,6 +50,12 @@ def is_violation(graph: Digraph, first: Set[int], second: Set[int], r: int, s: i
 def largest_conceivable_r(n: int) -> int:
     """Return ``ceil(n/2)``, which no r* on n nodes exceeds (Lemma 1 (v); split the nodes in two halves)."""
     return (n + 1) // 2
+
+
+def half_split(graph: Digraph) -> Pair:
+    """Return two halves of n >= 2 nodes: nobody hears more than ceil(n/2) across, so they violate every greater r."""
+    half = graph.n // 2
+    return Pair(frozenset(range(half)), frozenset(range(half, graph.n)))
 
 
 def require_r_and_s(graph: Digraph, r: int, s: int = 1) -> None:

@@ -2,29 +2,21 @@
 
 from __future__ import annotations
 
-import enum
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from certificates.graph import Label
+from robustness.answers import Answer, Question, Verdict
+from robustness.definitions import half_split, largest_conceivable_r, r_reachable_ids
 from robustness.digraph import Digraph
-from robustness.errors import Undecided
+from robustness.errors import InternalError, Undecided
+from robustness.evidence import Evidence, Pair
 from robustness.natural_order import in_natural_order
 from robustness.showing import Shown, labels_in_words
 
 __all__ = ["Bound", "Bounds", "RobustnessResult", "Verdict", "Witness"]
-
-
-class Verdict(enum.Enum):
-    """The answer to a question about robustness."""
-
-    ROBUST = "robust"
-    NOT_ROBUST = "not-robust"
-    UNDECIDED = "undecided"
-    #: r* is known exactly; ``s_bounds`` tells how exactly s_max(r*) is.
-    DETERMINED = "determined"
 
 
 class Witness(NamedTuple):
@@ -32,6 +24,11 @@ class Witness(NamedTuple):
 
     S1: frozenset[Label]
     S2: frozenset[Label]
+
+    @classmethod
+    def of(cls, graph: Digraph, pair: Pair) -> Witness:
+        """Return a pair of id sets as label sets."""
+        return cls(graph.labels_of(pair.first), graph.labels_of(pair.second))
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,10 +42,64 @@ class Bound:
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """What is proven: ``lower.value <= r* <= upper.value``."""
+    """What is proven: ``lower.value <= r* <= upper.value``, or the same of s_max(r)."""
 
     lower: Bound
     upper: Bound
+
+    @classmethod
+    def trivial(cls, graph: Digraph) -> Bounds:
+        """Return what every graph satisfies, ``0 <= r* <= ceil(n/2)``, with the pair of the upper bound."""
+        pair = Witness.of(graph, half_split(graph)) if graph.n >= 2 else None
+        return cls(Bound(0, "every graph is 0-robust"), Bound(largest_conceivable_r(graph.n), "r* <= ceil(n/2)", pair))
+
+    @classmethod
+    def by_convention(cls, n: int) -> Bounds:
+        """Return r* of a graph on n < 2 nodes, which no pair of sets decides: n."""
+        settled = Bound(n, "convention for fewer than two nodes")
+        return cls(settled, settled)
+
+    def narrowed_by(self, question: Question, answer: Answer, reason: str = "") -> Bounds:
+        """Return these bounds on r* after an answer: the only place that says what an answer does to bounds.
+
+        (r,s)-robust gives ``r* >= r``. A violation of (r,s) gives ``r* < r + s - 1``, because (r+s-1)-robust implies
+        (r,s)-robust; for s = 1 its pair is the witness. ``reason`` says in words why the new bound holds.
+        """
+        graph, r, s = question
+        if answer.verdict is Verdict.ROBUST and r > self.lower.value:
+            return Bounds(Bound(r, reason or f"({r},{s})-robust"), self.upper)
+        if answer.verdict is Verdict.NOT_ROBUST and r + s - 2 < self.upper.value:
+            reason = reason or f"violating pair of ({r},{s})-robustness"
+            witness = Witness.of(graph, answer.pair) if s == 1 and answer.pair is not None else None
+            return Bounds(self.lower, Bound(r + s - 2, reason, witness))
+        return self
+
+    def s_narrowed_by(self, question: Question, answer: Answer, reason: str) -> Bounds:
+        """Return these bounds on s_max(r) after an answer.
+
+        (r,s)-robust gives ``s_max(r) >= s``. A pair violates (r,s) for every s above its own number of exempt nodes,
+        ``|X_S1^r| + |X_S2^r|``, so s_max(r) is at most that.
+        """
+        graph, r, s = question
+        if answer.verdict is Verdict.ROBUST:
+            return Bounds(Bound(s, reason), self.upper)
+        if answer.verdict is Verdict.NOT_ROBUST:
+            if answer.pair is None:
+                raise InternalError(f"a violation of ({r},{s})-robustness without a pair: please report")
+            exempt = sum(len(r_reachable_ids(graph, side, r)) for side in answer.pair)
+            return Bounds(self.lower, Bound(exempt, reason, Witness.of(graph, answer.pair)))
+        return self
+
+    def met_with(self, other: Bounds) -> Bounds:
+        """Return the tighter bound on either side; of equal upper bounds one that has a pair."""
+        lower = max(self.lower, other.lower, key=lambda bound: bound.value)
+        upper = min(self.upper, other.upper, key=lambda bound: (bound.value, bound.witness is None))
+        return Bounds(lower, upper)
+
+    @property
+    def are_equal(self) -> bool:
+        """Whether one value is left."""
+        return self.lower.value == self.upper.value
 
     def as_dict(self) -> dict[str, Any]:
         """Return the bounds as JSON-ready values."""
@@ -84,6 +135,8 @@ class RobustnessResult(Shown):
         The whole table r -> s_max(r), where ``determine_robustness`` computed it on the way.
     algorithm : str
         The name in ``ALGORITHMS`` that decided, or the bound or rule that made a search unnecessary.
+    basis : Evidence or None
+        What a decision rests on, as one of the types of :mod:`robustness.evidence`.
     stats : mapping
         Counters of the search: nodes, leaves, solver status, the reason of an UNDECIDED.
     seconds : float
@@ -104,6 +157,24 @@ class RobustnessResult(Shown):
     stats: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}), compare=False, hash=False)
     seconds: float = field(default=0.0, compare=False)
     graph: Digraph | None = field(default=None, compare=False)
+    basis: Evidence | None = field(default=None, repr=False, compare=False, hash=False)
+
+    @classmethod
+    def of(cls, question: Question, answer: Answer, seconds: float = 0.0) -> RobustnessResult:
+        """Return what a user is told of an answer."""
+        graph, r, s = question
+        return cls(
+            answer.verdict,
+            r,
+            s,
+            None if answer.pair is None else Witness.of(graph, answer.pair),
+            bounds=Bounds.trivial(graph).narrowed_by(question, answer),
+            algorithm=answer.decided_by,
+            stats=answer.stats,
+            seconds=seconds,
+            graph=graph,
+            basis=answer.evidence,
+        )
 
     def __bool__(self) -> bool:
         raise TypeError(

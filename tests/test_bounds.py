@@ -14,14 +14,16 @@ from hypothesis import strategies as st
 from networkx.generators.atlas import graph_atlas_g
 
 import robustness as rb
+from robustness.answers import Answer, Question
 from robustness.decision.algorithms import exhaustive
-from robustness.decision.bounds import Growth, Settled, Spectral, all_bounds, bounds, settle
-from robustness.decision.bounds.cuts import closed_pair, degree_pair, half_split, separating_pair
+from robustness.decision.bounds import all_bounds, bounds, settle
+from robustness.decision.bounds.cuts import closed_pair, degree_pair, separating_pair
 from robustness.decision.bounds.degree import degree_bound, robust_by_degree
 from robustness.decision.bounds.growth import find_growth, growth_order
 from robustness.decision.bounds.spectral import is_positive_definite, prove_lambda_2_above, spectral_evidence
 from robustness.decision.front import robustness_profile
-from robustness.definitions import is_violation
+from robustness.definitions import half_split, is_violation
+from robustness.evidence import DegreeRule, Growth, Spectral
 from robustness.limits import Limits
 from robustness.results import Verdict
 
@@ -80,7 +82,7 @@ def require_growth(graph: rb.Digraph, growth: Growth, r: int, s: int) -> None:
         assert seed_is_robust(graph, growth.seed, r, s) or s > len(growth.seed)
 
 
-def require_settled(graph: rb.Digraph, settled: Settled, r: int, s: int) -> None:
+def require_settled(graph: rb.Digraph, settled: Answer, r: int, s: int) -> None:
     if settled.verdict is Verdict.NOT_ROBUST:
         assert settled.pair is not None
         assert is_violation(graph, *settled.pair, r, s)
@@ -90,7 +92,7 @@ def require_settled(graph: rb.Digraph, settled: Settled, r: int, s: int) -> None
         assert settled.evidence.r >= r + s - 1
         assert settled.evidence.mu == 2 * (settled.evidence.r - 1)
     else:
-        assert settled.evidence == "degree"
+        assert isinstance(settled.evidence, DegreeRule)
         assert min(graph.in_degrees) >= graph.n // 2 + r - 1
 
 
@@ -107,7 +109,7 @@ class TestAgainstTheTruth:
         settled = 0
         for graph, profile in small_graphs():
             for r, s in itertools.product(profile, (1, 2, graph.n)):
-                found = settle(graph, r, s)
+                found = settle(Question(graph, r, s), Limits())
                 if found is not None:
                     settled += 1
                     require_settled(graph, found, r, s)
@@ -172,7 +174,7 @@ class TestAgainstTheTruth:
         both = bounds(graph)
         assert both.lower.value <= r_star(profile) <= both.upper.value
         for r, s in itertools.product(profile, (1, 2)):
-            found = settle(graph, r, s)
+            found = settle(Question(graph, r, s), Limits())
             if found is not None:
                 require_settled(graph, found, r, s)
                 assert (found.verdict is Verdict.ROBUST) == (profile[r] >= s)
@@ -353,7 +355,7 @@ class TestLargeGraphs:
     )
     def test_settled(self, graph: object, r: int, verdict: Verdict) -> None:
         large = digraph(graph())  # type: ignore[operator]
-        found = settle(large, r)
+        found = settle(Question(large, r, 1), Limits())
         assert found is not None
         assert found.verdict is verdict
         if found.pair is not None:

@@ -13,8 +13,9 @@ import networkx as nx
 import pytest
 
 from robustness import Digraph, InternalError, InvalidParameter, Undecided, Verdict
-from robustness.decision.algorithms import Pair, cp_sat, milp, model_solving, transform
+from robustness.decision.algorithms import cp_sat, milp, model_solving, transform
 from robustness.decision.algorithms.violation_model import ViolationModel, all_pairs, compatible_pairs
+from robustness.evidence import Pair
 from robustness.limits import Limits
 from tests.oracles import brute_profile, digraphs, graphs, is_violating
 

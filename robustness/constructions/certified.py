@@ -12,13 +12,14 @@ from typing import Any
 
 from certificates import verify
 from certificates.graph import Label, label_key
+from robustness.answers import Question, Verdict
 from robustness.constructions.guarantee import Guarantee, Guaranteed
 from robustness.constructions.operations import carry_out, replay
 from robustness.decision.certification import direct_evidence, encode
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InternalError, InvalidParameter, Undecided
 from robustness.limits import Limits
-from robustness.results import RobustnessResult, Verdict
+from robustness.results import RobustnessResult
 
 __all__ = ["certify_derivation"]
 
@@ -84,7 +85,7 @@ def certify_derivation(
     if leaf.sha256 not in by_digest:
         raise InvalidParameter(f"the seed graph {leaf.sha256[:12]} is missing: give it in seeds")
     seed = by_digest[leaf.sha256]
-    proof = direct_evidence(seed, leaf.r, leaf.s, Limits.of(time_limit))
+    proof = direct_evidence(Question(seed, leaf.r, leaf.s), Limits.of(time_limit))
     if proof is None:
         why = "it is not, or the time limit is too short"
         raise Undecided(f"no proof was found that the seed is ({leaf.r},{leaf.s})-robust: {why}")

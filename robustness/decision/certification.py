@@ -8,28 +8,27 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 from certificates import MalformedCertificate, verify
 from certificates.verification import FORMAT
-from robustness.decision.algorithms import Pair
-from robustness.decision.front import check_rs_robustness
-from robustness.decision.ladder import run
-from robustness.definitions import largest_conceivable_r, require_r_and_s
-from robustness.digraph import Digraph, GraphLike, as_digraph
+from robustness.answers import Answer, Question, Verdict, answers_in_turn
+from robustness.decision.bounds import settle
+from robustness.decision.bounds.degree import robust_by_degree
+from robustness.decision.ladder import algorithm_rung, by_convention
+from robustness.definitions import largest_conceivable_r
+from robustness.digraph import Digraph, GraphLike
 from robustness.errors import InternalError, InvalidParameter
-from robustness.limits import Limits, Progress, Steps
-from robustness.results import RobustnessResult, Verdict, Witness
+from robustness.evidence import Convention, DegreeRule, Evidence, Growth, Refutation, ViolatingPair
+from robustness.limits import Limits, Progress
+from robustness.results import RobustnessResult
 
-__all__ = ["Evidence", "certify", "direct_evidence", "encode"]
+__all__ = ["Encoded", "certify", "certify_within", "direct_evidence", "encode", "kernel_evidence"]
 
-#: What heuristics may spend before the exact search begins: about a quarter of a second.
-_HEURISTIC_STEPS = 250_000_000
-
-#: A header and a body: what stands in the certificate's first line as evidence, and what follows it.
-Evidence = tuple[dict[str, Any], bytes]
+#: Evidence in a certificate: what its first line says of it, and the bytes that follow.
+Encoded = tuple[dict[str, Any], bytes]
 
 
 def certify(
@@ -74,98 +73,95 @@ def certify(
     robust
     """
     started = time.monotonic()
-    graph = as_digraph(G)
-    require_r_and_s(graph, r, s)
-    if r == 0 or (graph.n < 2 and r > largest_conceivable_r(graph.n)):
-        raise InvalidParameter(f"({r},{s})-robust on {graph.n} node(s) is settled by convention: nothing to certify")
     if evidence not in ("shortest", "refutation"):
         raise InvalidParameter(f"evidence is 'shortest' or 'refutation', not {evidence!r}")
     limits = Limits.of(time_limit, jobs, seed, progress)
-    if graph.n < 2 or r > largest_conceivable_r(graph.n):
-        result = check_rs_robustness(graph, r, s)
-        found: Evidence | None = ({"kind": "degree"}, b"")
-        if result.witness is not None:
-            found = _violation(Pair(graph.ids(result.witness.S1), graph.ids(result.witness.S2)))
-    else:
-        result, found = _search(graph, r, s, limits, evidence == "shortest")
-    if found is None:
-        return replace(result, seconds=time.monotonic() - started)
-    certificate = encode(graph, r, s, result.verdict, found)
+    result = certify_within(Question.about(G, r, s), limits, shortest=evidence == "shortest")
+    return replace(result, seconds=time.monotonic() - started)
+
+
+def certify_within(question: Question, limits: Limits, *, shortest: bool = True) -> RobustnessResult:
+    """Do what :func:`certify` does for a question that is known to be valid, within ``limits``."""
+    graph, r, s = question
+    if r == 0 or (graph.n < 2 and r > largest_conceivable_r(graph.n)):
+        raise InvalidParameter(f"({r},{s})-robust on {graph.n} node(s) is settled by convention: nothing to certify")
+    answer, proof = _proven(question, limits, shortest)
+    result = RobustnessResult.of(question, answer)
+    if proof is None:
+        return result
+    certificate = encode(graph, r, s, result.verdict, proof)
     try:
         claim = verify(graph.canonical_bytes(), certificate)
     except MalformedCertificate as problem:
-        stats = dict(result.stats) | {"reason": f"the proof is beyond what the kernel checks: {problem}"}
+        reason = f"the proof is beyond what the kernel checks: {problem}"
         if result.verdict is Verdict.NOT_ROBUST:  # the pair was re-checked: only its certificate cannot be written
-            return replace(result, stats=stats, seconds=time.monotonic() - started)
-        undecided = RobustnessResult(Verdict.UNDECIDED, r, s, algorithm=result.algorithm, stats=stats)
-        return replace(undecided, seconds=time.monotonic() - started)
+            return replace(result, stats={**answer.stats, "reason": reason})
+        return RobustnessResult.of(
+            question, replace(Answer.undecided(reason, answer.stats), decided_by=answer.decided_by)
+        )
     if (claim.verdict, claim.r, claim.s) != (result.verdict.value, r, s):
         raise InternalError(f"the certificate proves {claim}, not the verdict {result.summary()}: please report")
-    return replace(result, certificate=certificate, seconds=time.monotonic() - started)
+    return replace(result, certificate=certificate)
 
 
-def encode(graph: Digraph, r: int, s: int, verdict: Verdict, evidence: Evidence) -> bytes:
+def _proven(question: Question, limits: Limits, shortest: bool) -> tuple[Answer, Encoded | None]:
+    """Climb the ladder to the first answer whose evidence the kernel knows, and return both.
+
+    The highest rung records its search, so its proof is known to the kernel; without one it was UNDECIDED.
+    """
+    rungs = by_convention, settle, algorithm_rung("subset-search", {"transcript": True})
+    for answer in answers_in_turn(rungs, question, limits):
+        is_wanted = shortest or isinstance(answer.evidence, ViolatingPair | Refutation | Convention)
+        proof = kernel_evidence(question, answer.evidence, limits) if is_wanted else None
+        if proof is not None or answer.verdict is Verdict.UNDECIDED:
+            break
+    return answer, proof
+
+
+def kernel_evidence(question: Question, evidence: Evidence, limits: Limits) -> Encoded | None:
+    """Return evidence in the form of a certificate; None for a kind that the kernel does not know.
+
+    Growth needs a proof that its seed is robust, which is searched for within ``limits``.
+    """
+    match evidence:
+        case ViolatingPair(pair):
+            return {"kind": "violation", "S1": sorted(pair.first), "S2": sorted(pair.second)}, b""
+        case DegreeRule() | Convention(holds=True):
+            return {"kind": "degree"}, b""
+        case Growth():
+            return _growth(question, evidence, limits)
+        case Refutation(transcript):
+            return {"kind": "refutation"}, transcript
+    return None
+
+
+def encode(graph: Digraph, r: int, s: int, verdict: Verdict, evidence: Encoded) -> bytes:
     """Return the certificate's bytes: one line of JSON, then the body."""
     claim = {"property": "rs-robust", "r": r, "s": s, "verdict": verdict.value}
     header = {"format": FORMAT, "graph": graph.sha256, "claim": claim, "evidence": evidence[0]}
     return json.dumps(header, separators=(",", ":")).encode("ascii") + b"\n" + evidence[1]
 
 
-def _search(graph: Digraph, r: int, s: int, limits: Limits, shortest: bool) -> tuple[RobustnessResult, Evidence | None]:
-    """Decide by bounds or by the recorded search, and return the result with its evidence."""
-    from robustness.decision.bounds import Growth, settle
-
-    settled = settle(graph, r, s, seed=limits.seed, steps=Steps(_HEURISTIC_STEPS, limits.expired))
-    if settled is not None and settled.pair is not None:
-        return _result(graph, r, s, "bounds", Verdict.NOT_ROBUST, {"rule": settled.rule}, settled.pair)
-    if not shortest:
-        settled = None
-    if settled is not None and settled.evidence == "degree":
-        found = _result(graph, r, s, "bounds", Verdict.ROBUST, {"rule": settled.rule})[0]
-        return found, ({"kind": "degree"}, b"")
-    if settled is not None and isinstance(settled.evidence, Growth):
-        evidence = _growth(graph, r, s, settled.evidence.seed, settled.evidence.order.tolist(), limits)
-        if evidence is not None:
-            return _result(graph, r, s, "bounds", Verdict.ROBUST, {"rule": settled.rule})[0], evidence
-    answer = run(graph, r, s, "subset-search", limits, {"transcript": True})
-    found, evidence = _result(graph, r, s, "subset-search", answer.verdict, answer.stats, answer.pair)
-    if answer.transcript is not None:
-        evidence = ({"kind": "refutation"}, answer.transcript)
-    return found, evidence
-
-
-def _result(
-    graph: Digraph, r: int, s: int, name: str, verdict: Verdict, stats: Mapping[str, Any], pair: Pair | None = None
-) -> tuple[RobustnessResult, Evidence | None]:
-    witness = None if pair is None else Witness(graph.labels_of(pair.first), graph.labels_of(pair.second))
-    return RobustnessResult(verdict, r, s, witness, algorithm=name, stats=stats), pair and _violation(pair)
-
-
-def _violation(pair: Pair) -> Evidence:
-    return {"kind": "violation", "S1": sorted(pair.first), "S2": sorted(pair.second)}, b""
-
-
-def _growth(
-    graph: Digraph, r: int, s: int, seed: Sequence[int], order: Sequence[int], limits: Limits
-) -> Evidence | None:
+def _growth(question: Question, growth: Growth, limits: Limits) -> Encoded | None:
     """Return growth evidence with its seed proven by the degree rule or by a refutation; None when neither works."""
-    members = sorted(seed)
+    graph, r, s = question
+    members = sorted(growth.seed)
     if len(members) < s:
         return None
     place = {i: k for k, i in enumerate(members)}
     arcs = [(place[j], place[i]) for i in members for j in graph.in_neighbours(i).tolist() if j in place]
-    induced = Digraph(range(len(members)), arcs)
-    proof = direct_evidence(induced, r, s, limits)
+    proof = direct_evidence(Question(Digraph(range(len(members)), arcs), r, s), limits)
     if proof is None:
         return None
-    return {"kind": "growth", "seed": members, "order": list(order), "proof": proof[0]}, proof[1]
+    return {"kind": "growth", "seed": members, "order": growth.order.tolist(), "proof": proof[0]}, proof[1]
 
 
-def direct_evidence(graph: Digraph, r: int, s: int, limits: Limits) -> Evidence | None:
+def direct_evidence(question: Question, limits: Limits) -> Encoded | None:
     """Return evidence of the kind "degree" or "refutation", which may prove a seed; None when neither was found."""
-    if int(graph.in_degrees.min()) >= graph.n // 2 + r - 1:
-        return {"kind": "degree"}, b""
+    graph, r, _ = question
+    if robust_by_degree(graph, r) or graph.n == r == 1:
+        return kernel_evidence(question, DegreeRule(), limits)
     if r > largest_conceivable_r(graph.n):
         return None
-    answer = run(graph, r, s, "subset-search", limits, {"transcript": True})
-    return None if answer.transcript is None else ({"kind": "refutation"}, answer.transcript)
+    answer = algorithm_rung("subset-search", {"transcript": True})(question, limits)
+    return kernel_evidence(question, answer.evidence, limits) if answer.verdict is Verdict.ROBUST else None

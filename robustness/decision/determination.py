@@ -8,17 +8,17 @@ s_max(r) to its own c, and one refutation at that candidate ends the descent.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
-from robustness.decision.algorithms import Answer
-from robustness.decision.ladder import decide, exempt_count, run, witness_of
+from robustness.answers import Answer, Question, Verdict, answers_in_turn
+from robustness.decision.ladder import algorithm_rung
 from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph
-from robustness.errors import InternalError, Undecided
+from robustness.errors import Undecided
 from robustness.limits import UNLIMITED, Limits, Steps
-from robustness.results import Bound, Bounds, RobustnessResult, Verdict
+from robustness.results import Bound, Bounds, RobustnessResult, Witness
 
 __all__ = ["EXACT_S_NODES", "PROFILE_NODES", "determine", "profile"]
 
@@ -44,6 +44,9 @@ _TURN_STEPS = 2_000_000_000
 #: What the search for s may spend on a graph of more nodes when nobody set a limit: about two seconds.
 _S_STEPS = 2_000_000_000
 
+#: Why an upper bound holds that local search found.
+_LOCAL_SEARCH = "a violating pair found by local search"
+
 
 @dataclass(slots=True)
 class _Work:
@@ -57,11 +60,8 @@ class _Work:
 
     def search(self, r: int, s: int, limits: Limits) -> Answer:
         """Decide (r,s)-robustness by an exact algorithm, after bounds have said what they can."""
-        if self.algorithm != "auto":
-            self.name, answer = decide(self.graph, r, s, self.algorithm, limits, {})
-        else:
-            self.name = "subset-search"
-            answer = run(self.graph, r, s, self.name, limits, {})
+        self.name = "subset-search" if self.algorithm == "auto" else self.algorithm
+        answer = _searched(self.graph, r, s, self.name, limits)
         for key, value in answer.stats.items():
             is_count = isinstance(value, int) and not isinstance(value, bool)
             self.stats[key] = self.stats.get(key, 0) + value if is_count else value
@@ -77,8 +77,7 @@ def determine(
 ) -> RobustnessResult:
     """Return the greatest r and s that are proven, as :func:`robustness.determine_robustness` documents."""
     if graph.n < 2:
-        settled = Bound(graph.n, "convention for fewer than two nodes")
-        bounds = Bounds(settled, settled)
+        bounds = Bounds.by_convention(graph.n)
         table = MappingProxyType(dict.fromkeys(range(1, graph.n + 1), 1))
         return RobustnessResult(Verdict.DETERMINED, graph.n, 1, bounds=bounds, profile=table, algorithm="definition")
     if algorithm == "auto" and graph.n <= PROFILE_NODES:
@@ -123,7 +122,7 @@ def profile(graph: Digraph, algorithm: str, limits: Limits) -> Mapping[int, int]
     for r in range(largest_conceivable_r(graph.n), 0, -1):
         # (r,s)-robust implies (r-1,s+1)-robust: what was proven for r+1 starts the descent for r.
         found = _greatest_s(work, r, min(known + 1, graph.n) if known else 0, limits)
-        if found.lower.value < found.upper.value:
+        if not found.are_equal:
             raise Undecided(
                 f"s_max({r}) lies in {found.lower.value}..{found.upper.value}: raise the time limit",
                 bounds=found,
@@ -131,6 +130,11 @@ def profile(graph: Digraph, algorithm: str, limits: Limits) -> Mapping[int, int]
             )
         table[r] = known = found.upper.value
     return dict(sorted(table.items()))
+
+
+def _searched(graph: Digraph, r: int, s: int, name: str, limits: Limits) -> Answer:
+    """Return the re-checked answer of one algorithm, for n >= 2 and 1 <= r <= ceil(n/2)."""
+    return next(answers_in_turn((algorithm_rung(name),), Question(graph, r, s), limits))
 
 
 def _limits_for_s(graph: Digraph, algorithm: str, limits: Limits, s_time_limit: float | None) -> Limits:
@@ -150,13 +154,17 @@ def _read_off(graph: Digraph, limits: Limits) -> RobustnessResult | None:
         return None
     r = max((r for r, s in table.items() if s), default=0)
     lower = Bound(r, "transform refuted every violating pair" if r else "every graph is 0-robust")
-    upper = _trivial_upper(graph)
+    upper = Bounds.trivial(graph).upper
     stats: dict[str, Any] = {"sets": 1 << graph.n}
     if r < upper.value:
-        answer = run(graph, r + 1, 1, "transform", limits, {})
+        answer = _searched(graph, r + 1, 1, "transform", limits)
         if answer.verdict is not Verdict.NOT_ROBUST:
             return None
-        upper = Bound(r, "violating pair found by transform", witness_of(graph, answer.pair))
+        upper = (
+            Bounds.trivial(graph)
+            .narrowed_by(Question(graph, r + 1, 1), answer, "violating pair found by transform")
+            .upper
+        )
     s = Bound(table[r], "transform") if r else Bound(graph.n, "every graph is (0,s)-robust")
     return RobustnessResult(
         Verdict.DETERMINED,
@@ -171,13 +179,6 @@ def _read_off(graph: Digraph, limits: Limits) -> RobustnessResult | None:
     )
 
 
-def _trivial_upper(graph: Digraph) -> Bound:
-    """Return ``r* <= ceil(n/2)`` with its pair: in a balanced split nobody hears more than ceil(n/2) from outside."""
-    from robustness.decision.bounds.cuts import half_split
-
-    return Bound(largest_conceivable_r(graph.n), "r* <= ceil(n/2)", witness_of(graph, half_split(graph)))
-
-
 def _greatest_r(work: _Work, on_bounds: Callable[[Bounds], None]) -> Bounds:
     """Return bounds on r*, equal unless a limit stopped the work.
 
@@ -186,14 +187,14 @@ def _greatest_r(work: _Work, on_bounds: Callable[[Bounds], None]) -> Bounds:
     refute: whichever way a graph is easy, it is decided that way, and a limit leaves a narrow interval.
     """
     graph, limits = work.graph, work.limits
-    found = Bounds(Bound(0, "every graph is 0-robust"), _trivial_upper(graph))
+    found = Bounds.trivial(graph)
     if work.algorithm != "auto":
         return _descend(work, found, limits, on_bounds)
     from robustness.decision.algorithms.subset_search import MOST_NODES
     from robustness.decision.bounds import bounds
 
     def report(cheap: Bounds) -> None:
-        met = _meet(found, cheap)
+        met = found.met_with(cheap)
         if met != found:
             on_bounds(met)
 
@@ -202,7 +203,7 @@ def _greatest_r(work: _Work, on_bounds: Callable[[Bounds], None]) -> Bounds:
         steps = Steps(_HEURISTIC_STEPS, part.expired)
         cheap = bounds(graph, seed=limits.seed, steps=steps, on_bounds=report, thorough=thorough)
         work.name = work.name if work.stats else "bounds"  # a search has counters
-        found = _meet(found, cheap)
+        found = found.met_with(cheap)
         found = _descend(work, found, _one_thread(limits, _SHORT_STEPS), on_bounds)
     is_last, turn, budget = False, 0, _TURN_STEPS
     while found.lower.value < found.upper.value and not is_last and not limits.expired():
@@ -218,7 +219,7 @@ def _greatest_r(work: _Work, on_bounds: Callable[[Bounds], None]) -> Bounds:
 
 def _one_thread(limits: Limits, steps: int) -> Limits:
     """Return limits for a search that a budget may stop: one thread stops at the same place on every machine."""
-    return Limits(limits.deadline, 1, limits.seed, limits.progress, steps)
+    return replace(limits, jobs=1, steps=steps)
 
 
 def _look_for_pairs(work: _Work, found: Bounds, steps: Steps, turn: int, on_bounds: Callable[[Bounds], None]) -> Bounds:
@@ -230,17 +231,11 @@ def _look_for_pairs(work: _Work, found: Bounds, steps: Steps, turn: int, on_boun
         pair = find_violation(work.graph, r, seed=work.limits.seed + turn, steps=steps, restarts=UNLIMITED)
         if pair is None:
             break
-        witness = witness_of(work.graph, pair)
-        found = Bounds(found.lower, Bound(r - 1, "a violating pair found by local search", witness))
+        found = found.narrowed_by(
+            Question(work.graph, r, 1), Answer.violated_by(pair), "a violating pair found by local search"
+        )
         on_bounds(found)
     return found
-
-
-def _meet(one: Bounds, two: Bounds) -> Bounds:
-    """Return the tighter bound on either side; of equal upper bounds one that has a pair."""
-    lower = max(one.lower, two.lower, key=lambda bound: bound.value)
-    upper = min(one.upper, two.upper, key=lambda bound: (bound.value, bound.witness is None))
-    return Bounds(lower, upper)
 
 
 def _descend(work: _Work, found: Bounds, limits: Limits, on_bounds: Callable[[Bounds], None]) -> Bounds:
@@ -274,10 +269,9 @@ def _decided(work: _Work, found: Bounds, r: int, limits: Limits) -> Bounds | Non
     answer = work.search(r, 1, limits)
     if answer.verdict is Verdict.UNDECIDED:
         return None
-    if answer.verdict is Verdict.ROBUST:
-        return Bounds(Bound(r, f"{work.name} refuted every violating pair"), found.upper)
-    witness = witness_of(work.graph, answer.pair)
-    return Bounds(found.lower, Bound(r - 1, f"violating pair found by {work.name}", witness))
+    is_robust = answer.verdict is Verdict.ROBUST
+    reason = f"{work.name} refuted every violating pair" if is_robust else f"violating pair found by {work.name}"
+    return found.narrowed_by(Question(work.graph, r, 1), answer, reason)
 
 
 def _greatest_s(work: _Work, r: int, known: int, limits: Limits) -> Bounds:
@@ -288,48 +282,48 @@ def _greatest_s(work: _Work, r: int, known: int, limits: Limits) -> Bounds:
     """
     graph = work.graph
     lower = Bound(known, "implied by what is proven" if known else "nothing proven yet")
-    upper = Bound(graph.n, "s_max(r) <= n")
+    found = Bounds(lower, Bound(graph.n, "s_max(r) <= n"))
     if work.algorithm == "auto":
-        lower, upper = _cheap_s(work, r, lower, upper, limits)
+        found = _cheap_s(work, r, found, limits)
     step = 1
-    while lower.value < upper.value:
-        s = min(lower.value + step, upper.value)
+    while found.lower.value < found.upper.value:
+        s = min(found.lower.value + step, found.upper.value)
         answer = work.search(r, s, limits)
         if answer.verdict is Verdict.UNDECIDED:
             break
-        if answer.verdict is Verdict.ROBUST:
-            lower, step = Bound(s, f"{work.name} refuted every violating pair"), 2 * step
-            continue
-        if answer.pair is None:
-            raise InternalError(f"a violation of ({r},{s})-robustness without a pair: please report")
-        upper = Bound(exempt_count(graph, answer.pair, r), "violating pair", witness_of(graph, answer.pair))
-        step = 1
-    return Bounds(lower, upper)
+        is_robust = answer.verdict is Verdict.ROBUST
+        reason = f"{work.name} refuted every violating pair" if is_robust else "violating pair"
+        found = found.s_narrowed_by(Question(graph, r, s), answer, reason)
+        step = 2 * step if is_robust else 1
+    return found
 
 
-def _cheap_s(work: _Work, r: int, lower: Bound, upper: Bound, limits: Limits) -> tuple[Bound, Bound]:
+def _cheap_s(work: _Work, r: int, known: Bounds, limits: Limits) -> Bounds:
     """Return bounds on s_max(r): from the degree rule, from one transform on small graphs, and from local search."""
     from robustness.decision.bounds.degree import robust_by_degree
     from robustness.decision.bounds.local_search import fewest_exempt
 
     if robust_by_degree(work.graph, r):
-        return Bound(work.graph.n, "degree rule: (r,s)-robust for every s"), upper
+        return Bounds(Bound(work.graph.n, "degree rule: (r,s)-robust for every s"), known.upper)
     if work.graph.n <= EXACT_S_NODES:
         exact = _by_transform(work.graph, r, limits)
         if exact is not None:
             return exact
     steps = Steps(_HEURISTIC_STEPS, limits.share(1 / 4).expired)
-    found = fewest_exempt(work.graph, r, seed=limits.seed, steps=steps, restarts=4, lower=lower.value)
-    if found is not None:
-        upper = Bound(found[0], "a violating pair found by local search", witness_of(work.graph, found[1]))
-    return lower, upper
+    found = fewest_exempt(work.graph, r, seed=limits.seed, steps=steps, restarts=4, lower=known.lower.value)
+    if found is None:
+        return known
+    return Bounds(
+        known.lower, Bound(found[0], "a violating pair found by local search", Witness.of(work.graph, found[1]))
+    )
 
 
-def _by_transform(graph: Digraph, r: int, limits: Limits) -> tuple[Bound, Bound] | None:
+def _by_transform(graph: Digraph, r: int, limits: Limits) -> Bounds | None:
     from robustness.decision.algorithms.transform import largest_s
 
     try:
         s, pair = largest_s(graph, r, limits)
     except Undecided:
         return None
-    return Bound(s, "transform"), Bound(s, "transform", witness_of(graph, pair))
+    witness = None if pair is None else Witness.of(graph, pair)
+    return Bounds(Bound(s, "transform"), Bound(s, "transform", witness))

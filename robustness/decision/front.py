@@ -1,7 +1,7 @@
 """THE front: every question about (r,s)-robustness of one graph comes through here.
 
-Inputs are validated once, corner cases and cheap bounds are settled once, an algorithm of the registry is
-chosen and recorded, and every violating pair is re-checked against the definition before NOT_ROBUST is said.
+A question is validated here, once; the ladder (:mod:`robustness.decision.ladder`) answers it, with what decided and a
+violating pair that was checked against the definition.
 """
 
 from __future__ import annotations
@@ -12,13 +12,13 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-from robustness.decision.algorithms import Answer, Pair, require_algorithm, require_options
+from robustness.answers import Question
+from robustness.decision.algorithms import require_algorithm, require_options
 from robustness.decision.determination import determine, profile
-from robustness.decision.ladder import decide, witness_of
-from robustness.definitions import largest_conceivable_r, require_r_and_s
+from robustness.decision.ladder import decide
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.limits import Limits, Progress
-from robustness.results import Bound, Bounds, RobustnessResult, Verdict
+from robustness.results import Bounds, RobustnessResult
 
 __all__ = [
     "check_rs_robustness",
@@ -89,7 +89,7 @@ def check_rs_robustness(
     seed : int
         Of the heuristics; it changes the time taken and the pair found, never the verdict.
     progress : callable, optional
-        Called now and then with a :class:`~robustness.decision.algorithms.Progress`.
+        Called now and then with a :class:`~robustness.limits.Progress`.
     **options
         Switches of the algorithm, listed in ``algorithms.OPTIONS``; they never change a verdict.
 
@@ -116,9 +116,8 @@ def check_rs_robustness(
     """
     require_algorithm(algorithm)
     require_options("check_rs_robustness", algorithm, options)
-    graph = as_digraph(G)
-    require_r_and_s(graph, r, s)
-    return check_within(graph, r, s, Limits.of(time_limit, jobs, seed, progress), algorithm, options)
+    question = Question.about(G, r, s)
+    return check_within(*question, Limits.of(time_limit, jobs, seed, progress), algorithm, options)
 
 
 def check_within(
@@ -134,9 +133,9 @@ def check_within(
     For those of this package who have limits of their own, and budgets of steps with them.
     """
     started = time.monotonic()
-    settled = _by_convention(graph, r, s)
-    name, answer = settled if settled is not None else decide(graph, r, s, algorithm, limits, options)
-    return _result(graph, r, s, name, answer, started)
+    question = Question(graph, r, s)
+    answer = decide(question, limits, algorithm, options)
+    return RobustnessResult.of(question, answer, time.monotonic() - started)
 
 
 def determine_robustness(
@@ -220,45 +219,3 @@ def robustness_profile(
     graph = as_digraph(G)
     require_algorithm(algorithm)
     return profile(graph, algorithm, Limits.of(time_limit, jobs, seed, progress))
-
-
-def _by_convention(graph: Digraph, r: int, s: int) -> tuple[str, Answer] | None:
-    """Settle the corners that need no search: r = 0, r > ceil(n/2), fewer than two nodes."""
-    if r == 0:
-        return "definition", Answer(Verdict.ROBUST, stats={"rule": "every graph is (0,s)-robust: X_S^0 = S"})
-    if r > largest_conceivable_r(graph.n):
-        # In a balanced split no node has more than ceil(n/2) in-neighbours on the other side.
-        half = graph.n // 2
-        pair = Pair(frozenset(range(half)), frozenset(range(half, graph.n))) if graph.n >= 2 else None
-        return "definition", Answer(Verdict.NOT_ROBUST, pair, {"rule": "r* <= ceil(n/2)"})
-    if graph.n < 2:
-        return "definition", Answer(Verdict.ROBUST, stats={"rule": "one node is (1,1)-robust by convention"})
-    return None
-
-
-def _result(graph: Digraph, r: int, s: int, name: str, answer: Answer, started: float) -> RobustnessResult:
-    return RobustnessResult(
-        verdict=answer.verdict,
-        r=r,
-        s=s,
-        witness=witness_of(graph, answer.pair),
-        bounds=_implied_bounds(graph, r, s, answer),
-        algorithm=name,
-        stats=answer.stats,
-        seconds=time.monotonic() - started,
-        graph=graph,
-    )
-
-
-def _implied_bounds(graph: Digraph, r: int, s: int, answer: Answer) -> Bounds:
-    """Return what one verdict says about r*: (r,s)-robust gives r* >= r, a violation of (r,1) gives r* <= r - 1."""
-    lower, upper = Bound(0, "every graph is 0-robust"), Bound(largest_conceivable_r(graph.n), "r* <= ceil(n/2)")
-    if answer.verdict is Verdict.ROBUST and r > 0:
-        lower = Bound(r, f"({r},{s})-robust")
-    if answer.verdict is Verdict.NOT_ROBUST and r <= upper.value:
-        # A pair that violates (r,s) with s > 1 violates (r+s-1, 1): (r+s-1)-robust implies (r,s)-robust.
-        refuted = r + s - 1
-        if refuted - 1 < upper.value:
-            pair = witness_of(graph, answer.pair) if s == 1 else None
-            upper = Bound(refuted - 1, f"violating pair of ({r},{s})-robustness", pair)
-    return Bounds(lower, upper)

@@ -1,66 +1,76 @@
-"""One question, one algorithm, one re-checked answer: what the front and everything built on it decide with.
+"""THE ladder: what settles a question about (r,s)-robustness, from conventions to exact search.
 
-``auto`` takes, in this order: the subset-minimum transform on small graphs (milliseconds); cheap bounds with their
-evidence; the subset search. A violating pair is re-checked against the definition before anybody sees it.
+Each rung is a function ``(question, limits) -> Answer | None``, and the first that answers settles. ``auto`` has four:
+the conventions for the corners; the subset-minimum transform on small graphs (milliseconds); cheap bounds with their
+evidence; the subset search. A named algorithm has two, the conventions and itself. Certification climbs a ladder of the
+same rungs and takes the first evidence that the kernel knows.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from types import MappingProxyType
 from typing import Any
 
-from robustness.decision.algorithms import ALGORITHMS, Answer, Pair
-from robustness.definitions import is_violation, r_reachable_ids
-from robustness.digraph import Digraph
-from robustness.errors import InternalError
-from robustness.limits import Limits, Steps
-from robustness.results import Verdict, Witness
+from robustness.answers import Answer, Question, Rung, answers_in_turn
+from robustness.decision.algorithms import ALGORITHMS
+from robustness.decision.bounds import settle
+from robustness.definitions import half_split, largest_conceivable_r
+from robustness.evidence import Convention, ViolatingPair
+from robustness.limits import Limits
 
-__all__ = ["TRANSFORM_NODES", "decide", "exempt_count", "run", "witness_of"]
+__all__ = ["TRANSFORM_NODES", "algorithm_rung", "by_convention", "decide", "rungs_of"]
 
 #: Up to this many nodes ``auto`` computes the whole profile by the subset-minimum transform: milliseconds.
 TRANSFORM_NODES = 18
 
-#: What heuristics may spend before the exact search begins: about a quarter of a second.
-_HEURISTIC_STEPS = 250_000_000
+_NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
 
 
 def decide(
-    graph: Digraph, r: int, s: int, algorithm: str, limits: Limits, options: Mapping[str, Any]
-) -> tuple[str, Answer]:
-    """Decide a question with n >= 2 and 1 <= r <= ceil(n/2); return what decided it and the answer."""
+    question: Question, limits: Limits, algorithm: str = "auto", options: Mapping[str, Any] = _NO_OPTIONS
+) -> Answer:
+    """Return the answer of the first rung that has one; its pair was checked against the definition."""
+    return next(answers_in_turn(rungs_of(algorithm, options), question, limits))
+
+
+def rungs_of(algorithm: str, options: Mapping[str, Any] = _NO_OPTIONS) -> tuple[Rung, ...]:
+    """Return the ladder of an algorithm, lowest rung first; the last one always answers.
+
+    Options are for the subset search, so with them ``auto`` does without the transform.
+    """
     if algorithm != "auto":
-        return algorithm, run(graph, r, s, algorithm, limits, options)
-    if graph.n <= TRANSFORM_NODES and not options:
-        return "transform", run(graph, r, s, "transform", limits, options)
-    from robustness.decision.bounds import settle
-
-    settled = settle(graph, r, s, seed=limits.seed, steps=Steps(_HEURISTIC_STEPS, limits.expired))
-    if settled is not None:
-        answer = Answer(settled.verdict, settled.pair, {"rule": settled.rule})
-        return "bounds", _checked(graph, r, s, "bounds", answer)
-    return "subset-search", run(graph, r, s, "subset-search", limits, options)
+        return by_convention, algorithm_rung(algorithm, options)
+    small = () if options else (_transform_of_few_nodes,)
+    return by_convention, *small, settle, algorithm_rung("subset-search", options)
 
 
-def run(graph: Digraph, r: int, s: int, name: str, limits: Limits, options: Mapping[str, Any]) -> Answer:
-    """Run one algorithm of the registry and re-check its pair."""
-    return _checked(graph, r, s, name, ALGORITHMS[name](graph, r, s, limits, **options))
+def by_convention(question: Question, limits: Limits) -> Answer | None:
+    """Settle the corners that need no search: r = 0, r > ceil(n/2), fewer than two nodes."""
+    graph, r, _ = question
+    if r == 0:
+        return _conventional(True, "every graph is (0,s)-robust: X_S^0 = S")
+    if r > largest_conceivable_r(graph.n):
+        rule = "r* <= ceil(n/2)"
+        if graph.n < 2:
+            return _conventional(False, rule)
+        return Answer(ViolatingPair(half_split(graph)), {"rule": rule}, "definition")
+    return _conventional(True, "one node is (1,1)-robust by convention") if graph.n < 2 else None
 
 
-def _checked(graph: Digraph, r: int, s: int, name: str, answer: Answer) -> Answer:
-    """Return ``answer`` after re-checking its pair against the definition; a wrong pair is an InternalError."""
-    if answer.verdict is not Verdict.NOT_ROBUST:
-        return answer
-    if answer.pair is None or not is_violation(graph, answer.pair.first, answer.pair.second, r, s):
-        raise InternalError(f"{name} returned {answer.pair}, no violation of ({r},{s})-robustness: please report")
-    return answer
+def _conventional(holds: bool, rule: str) -> Answer:
+    return Answer(Convention(holds, rule), {"rule": rule}, "definition")
 
 
-def exempt_count(graph: Digraph, pair: Pair, r: int) -> int:
-    """Return ``|X_S1^r| + |X_S2^r|`` of a pair: it violates (r,s) for every greater s, so s_max(r) is at most this."""
-    return len(r_reachable_ids(graph, pair.first, r)) + len(r_reachable_ids(graph, pair.second, r))
+def algorithm_rung(name: str, options: Mapping[str, Any] = _NO_OPTIONS) -> Callable[[Question, Limits], Answer]:
+    """Return the rung that runs one algorithm of the registry."""
+
+    def run(question: Question, limits: Limits) -> Answer:
+        return replace(ALGORITHMS[name](*question, limits, **options), decided_by=name)
+
+    return run
 
 
-def witness_of(graph: Digraph, pair: Pair | None) -> Witness | None:
-    """Return a pair of id sets as label sets."""
-    return None if pair is None else Witness(graph.labels_of(pair.first), graph.labels_of(pair.second))
+def _transform_of_few_nodes(question: Question, limits: Limits) -> Answer | None:
+    return algorithm_rung("transform")(question, limits) if question.graph.n <= TRANSFORM_NODES else None

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from robustness.decision.algorithms import Pair
 from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
+from robustness.evidence import Pair
 from robustness.graph_search.properties import Connected, Edges, HasTrap, InDegree, Property, RSRobust
 
 if TYPE_CHECKING:

@@ -19,10 +19,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robustness.constructions.traps import find_trap
-from robustness.decision.algorithms import Pair
 from robustness.decision.front import check_rs_robustness
 from robustness.digraph import Digraph
 from robustness.errors import InternalError, Undecided
+from robustness.evidence import Pair
 from robustness.graph_search.connectivity import smallest_separation
 from robustness.graph_search.model import GraphModel
 from robustness.graph_search.properties import Connected, HasTrap, Property, RSRobust

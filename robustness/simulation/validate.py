@@ -27,8 +27,8 @@ from robustness.errors import InvalidParameter
 from robustness.results import RobustnessResult
 from robustness.simulation.adversaries import ADVERSARIES
 from robustness.simulation.attacks import attack_from_violation
+from robustness.simulation.claim import claim_of_certificate, claim_of_result
 from robustness.simulation.draws import Draws
-from robustness.simulation.evidence import claim_of_certificate, claim_of_result
 from robustness.simulation.outcome import Outcome, RunVerdict
 from robustness.simulation.replay import write_run
 from robustness.simulation.run import simulate

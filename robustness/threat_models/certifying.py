@@ -27,10 +27,10 @@ from math import comb
 from certificates import verify, verify_tolerance
 from certificates.tolerance import FORMAT
 from robustness.constructions.traps import without
-from robustness.decision.algorithms import Pair
 from robustness.decision.certification import certify, encode
 from robustness.digraph import Digraph
 from robustness.errors import InternalError
+from robustness.evidence import Pair
 from robustness.results import Verdict
 from robustness.threat_models.models import NO_TRAP, RS_ROBUST
 from robustness.threat_models.results import AttackSets, ToleranceResult

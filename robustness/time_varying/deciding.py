@@ -23,10 +23,10 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from robustness.decision.bounds.growth import Growth
 from robustness.decision.front import check_within
 from robustness.decision.ladder import TRANSFORM_NODES
 from robustness.digraph import Digraph
+from robustness.evidence import Growth
 from robustness.limits import Limits
 from robustness.results import RobustnessResult, Verdict, Witness
 from robustness.time_varying.growth import Arcs, Seed, find_seed, grow

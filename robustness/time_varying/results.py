@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, overload
 
-from robustness.decision.bounds.growth import Growth
 from robustness.digraph import Digraph
 from robustness.errors import Undecided
+from robustness.evidence import Growth
 from robustness.natural_order import in_natural_order
 from robustness.results import Verdict, Witness
 from robustness.showing import Shown, labels_in_words

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
+from robustness import answers
+from robustness.decision.bounds import settle
 from robustness.definitions import largest_conceivable_r, r_reachable_ids
 from robustness.digraph import Digraph
-from robustness.limits import Limits, Steps
-from robustness.results import Verdict
+from robustness.limits import Limits
 from robustness.traps.question import Question, Sets
 
 __all__ = ["Settled", "settle_trap"]
 
 #: A solution or None for "there is none", and the lemma.
 Settled = tuple[Sets | None, str]
-
-_HEURISTIC_STEPS = 250_000_000
 
 
 def settle_trap(graph: Digraph, question: Question, limits: Limits) -> Settled | None:
@@ -75,16 +74,14 @@ def _high_degree(graph: Digraph, question: Question) -> Settled | None:
 
 def _by_robustness(graph: Digraph, question: Question, limits: Limits) -> Settled | None:
     """(2f+1)-robust: none. A violation of (f+1)- or (f+1,f+1)-robustness: one. As far as bounds tell."""
-    from robustness.decision.bounds import settle
-
     f, highest = question.f, largest_conceivable_r(graph.n)
     for r, s in ((2 * f + 1, 1), (f + 1, 1), (f + 1, f + 1)):
         if r > highest or limits.expired():
             continue
-        settled = settle(graph, r, s, seed=limits.seed, steps=Steps(_HEURISTIC_STEPS, limits.expired))
+        settled = settle(answers.Question(graph, r, s), limits)
         if settled is None:
             continue
-        if settled.verdict is Verdict.ROBUST and r == 2 * f + 1:
+        if settled.verdict is answers.Verdict.ROBUST and r == 2 * f + 1:
             return None, f"{r}-robust, so no trap for f = {f}"
         if settled.pair is not None and r == f + 1:
             S1, S2 = settled.pair

@@ -15,7 +15,7 @@ from robustness.constructions.small_graphs import each_graph
 from robustness.errors import InvalidParameter
 from robustness.results import RobustnessResult, Verdict, Witness
 from robustness.simulation import ADVERSARIES, Scenario, Topology, random_start, schedule_named, simulate
-from robustness.simulation.evidence import claim_of_certificate, claim_of_result
+from robustness.simulation.claim import claim_of_certificate, claim_of_result
 from robustness.simulation.replay import read_run
 from robustness.simulation.validate import malicious_sets, promised_regimes, validate_certificate
 

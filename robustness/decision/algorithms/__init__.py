@@ -9,34 +9,15 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any, NamedTuple, Protocol, cast
+from typing import Any, Protocol, cast
 
+from robustness.answers import Answer
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
 from robustness.limits import Limits
-from robustness.results import Verdict
 
-__all__ = ["ALGORITHMS", "OPTIONS", "Algorithm", "Answer", "Pair", "require_algorithm", "require_options"]
-
-
-class Pair(NamedTuple):
-    """A violating pair as id sets."""
-
-    first: frozenset[int]
-    second: frozenset[int]
-
-
-@dataclass(frozen=True, slots=True)
-class Answer:
-    """What an algorithm returns: ROBUST, NOT_ROBUST with a pair, or UNDECIDED with a reason in ``stats``."""
-
-    verdict: Verdict
-    pair: Pair | None = None
-    stats: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
-    #: The transcript of a refutation (see docs/certificate-format.md), when one was asked for.
-    transcript: bytes | None = None
+__all__ = ["ALGORITHMS", "OPTIONS", "Algorithm", "require_algorithm", "require_options"]
 
 
 class Algorithm(Protocol):

@@ -6,7 +6,8 @@ is as fast as through CP-SAT's own interface (0.48 s and 0.43 s to refute r = 8 
 
 from __future__ import annotations
 
-from robustness.decision.algorithms import Answer, model_solving
+from robustness.answers import Answer
+from robustness.decision.algorithms import model_solving
 from robustness.digraph import Digraph
 from robustness.limits import Limits
 from robustness.results import Bounds

@@ -7,10 +7,10 @@ the definition itself. All other algorithms are compared with this one.
 
 from __future__ import annotations
 
-from robustness.decision.algorithms import Answer, Pair
+from robustness.answers import Answer
 from robustness.digraph import Digraph
+from robustness.evidence import Exhausted, Pair
 from robustness.limits import Limits
-from robustness.results import Verdict
 
 __all__ = ["decide"]
 
@@ -21,7 +21,7 @@ def decide(graph: Digraph, r: int, s: int, limits: Limits) -> Answer:
     reachable: dict[int, int] = {}
     for members in range(1, everyone + 1):
         if members & 1023 == 0 and limits.expired():
-            return Answer(Verdict.UNDECIDED, stats={"pairs": 0, "reason": "the time limit was reached"})
+            return Answer.undecided("the time limit was reached", {"pairs": 0})
         outside = everyone ^ members
         reachable[members] = sum(
             1 << i for i in range(graph.n) if members >> i & 1 and (hears[i] & outside).bit_count() >= r
@@ -29,15 +29,15 @@ def decide(graph: Digraph, r: int, s: int, limits: Limits) -> Answer:
     pairs = 0
     for first in range(1, everyone + 1):
         if limits.expired():
-            return Answer(Verdict.UNDECIDED, stats={"pairs": pairs, "reason": "the time limit was reached"})
+            return Answer.undecided("the time limit was reached", {"pairs": pairs})
         second = rest = everyone ^ first
         while second:
             pairs += 1
             x1, x2 = reachable[first], reachable[second]
             if not (x1 == first or x2 == second or x1.bit_count() + x2.bit_count() >= s):
-                return Answer(Verdict.NOT_ROBUST, Pair(_ids(first), _ids(second)), {"pairs": pairs})
+                return Answer.violated_by(Pair(_ids(first), _ids(second)), {"pairs": pairs})
             second = (second - 1) & rest
-    return Answer(Verdict.ROBUST, stats={"pairs": pairs})
+    return Answer(Exhausted(), {"pairs": pairs})
 
 
 def _ids(mask: int) -> frozenset[int]:

@@ -6,7 +6,8 @@ among the feasible solutions of the (r,s) programme; r* and s_max(r) are also mi
 
 from __future__ import annotations
 
-from robustness.decision.algorithms import Answer, model_solving
+from robustness.answers import Answer
+from robustness.decision.algorithms import model_solving
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
 from robustness.limits import Limits

@@ -15,7 +15,7 @@ from concurrent.futures import Future, wait
 from datetime import timedelta
 from typing import TYPE_CHECKING, Any
 
-from robustness.decision.algorithms import Answer, Pair
+from robustness.answers import Answer, Verdict
 from robustness.decision.algorithms.violation_model import (
     ViolationModel,
     all_pairs,
@@ -26,8 +26,9 @@ from robustness.decision.algorithms.violation_model import (
 from robustness.definitions import is_violation, r_reachable_ids
 from robustness.digraph import Digraph
 from robustness.errors import InternalError, Undecided
+from robustness.evidence import Exhausted, Pair
 from robustness.limits import Limits, Progress
-from robustness.results import Bound, Bounds, Verdict, Witness
+from robustness.results import Bound, Bounds, Witness
 
 if TYPE_CHECKING:
     from ortools.math_opt.python import mathopt
@@ -53,21 +54,22 @@ def decide(graph: Digraph, r: int, s: int, limits: Limits, solver: str, *, pair_
     try:
         compatible = compatible_pairs(graph, r, s, limits) if pair_counting else all_pairs(graph.n)
         if not any(compatible):
-            return Answer(Verdict.ROBUST, stats=stats | {"solver_status": "not needed: pair counting"})
+            return Answer(Exhausted(), stats | {"solver_status": "not needed: pair counting"})
         problem = pair_model(graph, r, s, compatible)
         result = _solve(problem.model, solver, limits)
     except Undecided as limit:
-        return Answer(Verdict.UNDECIDED, stats=stats | {"reason": str(limit)})
+        return Answer.undecided(str(limit), stats)
     reason = result.termination.reason
     stats |= {"solver_status": reason.name.lower(), "nodes": result.solve_stats.node_count}
     verdict = verdict_of(reason)
     if verdict is Verdict.UNDECIDED:
-        return Answer(verdict, stats=stats | {"reason": _limit_text(result.termination)})
-    pair = _best_pair(problem, result) if verdict is Verdict.NOT_ROBUST else None
-    if verdict is Verdict.NOT_ROBUST and not (pair and is_violation(graph, pair.first, pair.second, r, s)):
-        stats["reason"] = f"{solver} returned no pair that is a violation: numerical tolerances"
-        return Answer(Verdict.UNDECIDED, stats=stats)
-    return Answer(verdict, pair, stats)
+        return Answer.undecided(_limit_text(result.termination), stats)
+    if verdict is Verdict.ROBUST:
+        return Answer(Exhausted(), stats)
+    pair = _best_pair(problem, result)
+    if pair is None or not is_violation(graph, pair.first, pair.second, r, s):
+        return Answer.undecided(f"{solver} returned no pair that is a violation: numerical tolerances", stats)
+    return Answer.violated_by(pair, stats)
 
 
 def verdict_of(reason: mathopt.TerminationReason) -> Verdict:
@@ -104,25 +106,24 @@ def largest_s(graph: Digraph, r: int, limits: Limits, solver: str, *, pair_count
     upper, pair = nothing.upper, _best_pair(problem, result)
     if pair is not None and is_violation(graph, pair.first, pair.second, r, graph.n):
         exempt = sum(len(r_reachable_ids(graph, side, r)) for side in pair)
-        upper = Bound(exempt, "violating pair", _witness(graph, pair))
+        upper = Bound(exempt, "violating pair", Witness.of(graph, pair))
     return Bounds(_lower(result, solver, upper.value), upper)
 
 
 def largest_r(graph: Digraph, limits: Limits, solver: str) -> Bounds:
     r"""Return bounds on r*, equal when the named solver finished: the least ``max |N_i \ S_k|`` over all pairs."""
     if graph.n < 2:
-        settled = Bound(graph.n, "convention for fewer than two nodes")
-        return Bounds(settled, settled)
-    top = Bound((graph.n + 1) // 2, "r* <= ceil(n/2)")
+        return Bounds.by_convention(graph.n)
+    nothing = Bounds.trivial(graph)
     problem = largest_r_model(graph)
     try:
         result = _solve(problem.model, solver, limits)
     except Undecided:
-        return Bounds(Bound(0, "every graph is 0-robust"), top)
-    upper, pair = top, _best_pair(problem, result)
+        return nothing
+    upper, pair = nothing.upper, _best_pair(problem, result)
     if pair is not None and pair.first and pair.second and not pair.first & pair.second:
         most = max(sum(j not in side for j in graph.in_neighbours(i).tolist()) for side in pair for i in side)
-        upper = min(top, Bound(most, "violating pair", _witness(graph, pair)), key=lambda bound: bound.value)
+        upper = min(upper, Bound(most, "violating pair", Witness.of(graph, pair)), key=lambda bound: bound.value)
     return Bounds(_lower(result, solver, upper.value), upper)
 
 
@@ -139,10 +140,6 @@ def _best_pair(problem: ViolationModel, result: mathopt.SolveResult) -> Pair | N
         if solution.primal_solution is not None:
             return problem.pair(solution.primal_solution.variable_values)
     return None
-
-
-def _witness(graph: Digraph, pair: Pair) -> Witness:
-    return Witness(graph.labels_of(pair.first), graph.labels_of(pair.second))
 
 
 def _limit_text(termination: mathopt.Termination) -> str:

@@ -24,9 +24,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from robustness.decision.algorithms import Answer, Pair
+from robustness.answers import Answer
 from robustness.digraph import Digraph
 from robustness.errors import InternalError, InvalidParameter
+from robustness.evidence import Exhausted, Pair, Refutation
 from robustness.kernels.layout import (
     CLOSED,
     DONATED,
@@ -42,7 +43,6 @@ from robustness.kernels.layout import (
     SYMMETRIC,
 )
 from robustness.limits import UNLIMITED, Limits, Progress
-from robustness.results import Verdict
 
 __all__ = ["MOST_NODES", "decide"]
 
@@ -103,7 +103,7 @@ def decide(
     if blockers not in (0, 1, 2):
         raise InvalidParameter(f"blockers is 0, 1 or 2, not {blockers!r}")
     if graph.n > MOST_NODES:
-        return Answer(Verdict.UNDECIDED, stats={"reason": f"subset-search takes at most {MOST_NODES} nodes"})
+        return Answer.undecided(f"subset-search takes at most {MOST_NODES} nodes")
     return _Search(graph, r, s, limits, transcript, blockers, look_ahead).run()
 
 
@@ -157,10 +157,10 @@ class _Search:
             "cubes": self.cubes,
         }
         if self.pair is not None:
-            return Answer(Verdict.NOT_ROBUST, self.pair, stats)
+            return Answer.violated_by(self.pair, stats)
         if self.reason:
-            return Answer(Verdict.UNDECIDED, stats=stats | {"reason": self.reason})
-        return Answer(Verdict.ROBUST, stats=stats, transcript=self.root.joined() if self.transcript else None)
+            return Answer.undecided(self.reason, stats)
+        return Answer(Refutation(self.root.joined()) if self.transcript else Exhausted(), stats)
 
     def _work(self, number: int) -> None:
         try:

@@ -25,12 +25,12 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from robustness.decision.algorithms import Answer, Pair
+from robustness.answers import Answer
 from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph
 from robustness.errors import Undecided
+from robustness.evidence import Exhausted, Pair
 from robustness.limits import Limits, Progress
-from robustness.results import Verdict
 
 __all__ = ["available_memory", "decide", "largest_s", "memory_needed", "profile"]
 
@@ -77,11 +77,11 @@ def decide(graph: Digraph, r: int, s: int, limits: Limits) -> Answer:
     try:
         greatest, pair = largest_s(graph, r, limits)
     except Undecided as limit:
-        return Answer(Verdict.UNDECIDED, stats={"sets": 0, "reason": str(limit)})
+        return Answer.undecided(str(limit), {"sets": 0})
     stats = {"sets": 1 << graph.n}
     if pair is None or greatest >= s:
-        return Answer(Verdict.ROBUST, stats=stats)
-    return Answer(Verdict.NOT_ROBUST, pair, stats)
+        return Answer(Exhausted(), stats)
+    return Answer.violated_by(pair, stats)
 
 
 def largest_s(graph: Digraph, r: int, limits: Limits) -> tuple[int, Pair | None]:

@@ -52,10 +52,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from robustness.decision.algorithms import Pair
 from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph
 from robustness.errors import Undecided
+from robustness.evidence import Pair
 from robustness.limits import Limits
 
 if TYPE_CHECKING:

@@ -1,9 +1,8 @@
 """Upper bounds on r* that structure gives at once, each with its violating pair.
 
 * ``ceil(n/2)``: in a split into two halves nobody has more than ceil(n/2) in-neighbours across.
-* ``max(1, min in-degree)``: the node v of smallest in-degree against all others. Nobody else hears more than one
-  node, v,
-  across, so the pair violates every r >= 2 with d_v < r.
+* ``max(1, min in-degree)``: the node v of smallest in-degree against all others. Nobody else hears more than
+  one node, v, across, so the pair violates every r >= 2 with d_v < r.
 * a separating node: in an undirected graph, two components of G - v hear only v from outside. The pair violates r = 2.
 * two closed sets: see :mod:`robustness.decision.bounds.reaching`. The pair violates r = 1.
 """
@@ -12,18 +11,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from robustness.decision.algorithms import Pair
 from robustness.decision.bounds.reaching import one_robustness
-from robustness.definitions import largest_conceivable_r
+from robustness.definitions import half_split, largest_conceivable_r
 from robustness.digraph import Digraph
+from robustness.evidence import Pair
 
-__all__ = ["at_once", "closed_pair", "degree_pair", "half_split", "separating_pair"]
-
-
-def half_split(graph: Digraph) -> Pair:
-    """Return two halves: they violate every r > ceil(n/2). n >= 2."""
-    half = graph.n // 2
-    return Pair(frozenset(range(half)), frozenset(range(half, graph.n)))
+__all__ = ["at_once", "closed_pair", "degree_pair", "separating_pair"]
 
 
 def degree_pair(graph: Digraph, r: int) -> Pair | None:

@@ -10,7 +10,7 @@ the source paper.)
 from __future__ import annotations
 
 from robustness.digraph import Digraph
-from robustness.results import Bound
+from robustness.results import Bound, Bounds
 
 __all__ = ["degree_bound", "robust_by_degree"]
 
@@ -27,7 +27,7 @@ def robust_by_degree(graph: Digraph, r: int) -> bool:
 def degree_bound(graph: Digraph) -> Bound:
     """Return the lower bound on r* that the degree rule gives, ``min in-degree - floor(n/2) + 1`` or 0."""
     if graph.n < 2:
-        return Bound(graph.n, "by convention for fewer than two nodes")
+        return Bounds.by_convention(graph.n).lower
     least = int(graph.in_degrees.min())
     value = max(0, least - graph.n // 2 + 1)
     return Bound(value, f"degree: every node hears at least {least} of {graph.n} nodes" if value else "none")

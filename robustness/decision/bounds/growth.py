@@ -19,43 +19,18 @@ The seed itself is proven (r,s)-robust by the degree rule inside it (a complete 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from robustness.digraph import Digraph
+from robustness.evidence import Growth
 from robustness.limits import Steps
 
-__all__ = ["Growth", "find_growth", "growth_order"]
+__all__ = ["find_growth", "growth_order"]
 
 _WORK_PER_CALL = 20_000_000
 _SEED_LIMIT = 64
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Growth:
-    """Evidence that a graph is (r,s)-robust.
-
-    Attributes
-    ----------
-    r, s : int
-        What it proves.
-    seed : tuple of int
-        Ids of nodes whose induced subgraph is (r,s)-robust.
-    order : array of int32, shape (n - len(seed),)
-        All other ids; each hears at least r + s - 1 nodes of the seed and of those before it.
-    seed_proof : str
-        ``"node"``: one node (r = s = 1); ``"degree"``: each node of the seed of k nodes hears at least floor(k/2) +
-        r - 1 of it; ``"exhaustive"``: every pair of subsets of it was examined.
-    """
-
-    r: int
-    s: int
-    seed: tuple[int, ...]
-    order: npt.NDArray[np.int32]
-    seed_proof: Literal["node", "degree", "exhaustive"]
 
 
 def growth_order(graph: Digraph, need: int, seed_ids: Sequence[int]) -> list[int] | None:

@@ -17,9 +17,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from robustness.decision.algorithms import Pair
-from robustness.decision.bounds.cuts import at_once, half_split
+from robustness.decision.bounds.cuts import at_once
+from robustness.definitions import half_split
 from robustness.digraph import Digraph
+from robustness.evidence import Pair
 from robustness.limits import Steps
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from robustness.decision.algorithms import Pair
 from robustness.digraph import Digraph
+from robustness.evidence import Pair
 
 if TYPE_CHECKING:
     from robustness.decision.bounds.adjacency import Adjacency

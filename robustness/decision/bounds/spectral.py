@@ -24,29 +24,23 @@ fraction-free elimination in Python integers decides, up to 64 nodes; otherwise 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from robustness.digraph import Digraph
+from robustness.evidence import Spectral
 from robustness.results import Bound
 
-__all__ = ["Spectral", "is_positive_definite", "prove_lambda_2_above", "spectral_bound", "spectral_evidence"]
+__all__ = ["MOST_SPECTRAL_NODES", "is_positive_definite", "prove_lambda_2_above", "spectral_bound", "spectral_evidence"]
 
+#: Cheap bounds stop here: the exact proof takes milliseconds up to this many nodes, and seconds beyond.
+MOST_SPECTRAL_NODES = 150
 _NODES = 600
 _EXACT_NODES = 64
 _EXACT_FLOAT = 2**53
 #: Below this the float lambda_2 is taken to be equal to the even integer, so that nothing is attempted.
 _TIE = 1e-8
-
-
-@dataclass(frozen=True, slots=True)
-class Spectral:
-    """Evidence of r-robustness: lambda_2 of the links that run both ways exceeds the integer ``mu = 2 (r - 1)``."""
-
-    r: int
-    mu: int
 
 
 def spectral_evidence(graph: Digraph) -> Spectral | None:
