@@ -28,7 +28,7 @@ from robustness.results import RobustnessResult, Verdict
 from robustness.threat_models.deciding import Decisions
 from robustness.threat_models.models import SECOND_ORDER_GAINS, THREAT_MODELS, ThreatModel
 from robustness.time_varying import TimeVaryingGraph
-from robustness.time_varying.checking import check_joint_within
+from robustness.time_varying.front import check_joint_within
 
 __all__ = ["MODELS_OVER_TIME", "JointDecisions", "over_time"]
 

@@ -9,7 +9,7 @@ for ever, because nobody in N_k hears anything but its own value from inside, an
   there; S1 and S2 are disjoint. With ``|M| <= f`` this is exactly a violation of (f+1,f+1)-robustness:
   take ``M = X_S1 | X_S2`` (Theorem 1 of the source paper, necessity).
 * *two faces*: a malicious node shows side 1 one value and side 2 the other, by lying to each (Byzantine) or by
-  delays (see :mod:`robustness.constructions.traps`); M, S1 and S2 are disjoint. This is a *trap*.
+  delays (see :mod:`robustness.simulation.attacks`); M, S1 and S2 are disjoint. This is a *trap*.
 
 M is bounded in all (*total*: ``|M| <= f``) or around every normal node (*local*: every node outside M, also one in
 neither S1 nor S2, hears at most f nodes of M).

@@ -187,7 +187,7 @@ def test_the_algorithm_is_the_one_asked_for(algorithm: str) -> None:
 
 
 def test_progress_is_told_now_and_then(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robustness.time_varying.checking._PROGRESS_SECONDS", 0.0)
+    monkeypatch.setattr("robustness.time_varying.front._PROGRESS_SECONDS", 0.0)
     told: list[Progress] = []
     check_joint_robustness(rotating_star(), 2, progress=told.append)
     assert told[-1].nodes > told[0].nodes
