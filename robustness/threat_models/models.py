@@ -53,7 +53,7 @@ class ThreatModel:
     exact : bool
         Whether either the promise or the attack always holds.
     faults : str
-        The fault model of :mod:`robustness.simulation.models` that the attack obeys.
+        The fault model of :mod:`robustness.simulation.fault_models` that the attack obeys.
     """
 
     name: str

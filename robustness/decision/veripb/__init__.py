@@ -1,5 +1,5 @@
 """Proofs for a third party's checker, in the pseudo-Boolean format of VeriPB."""
 
-from robustness.decision.veripb.export import export
+from robustness.decision.veripb.front import export
 
 __all__ = ["export"]

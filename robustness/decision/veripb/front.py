@@ -5,7 +5,7 @@ linear inequalities, made from the graph alone; it has no solution exactly when 
 derives the contradiction ``0 >= 1`` from the model in steps that a checker follows without knowing anything of graphs.
 docs/veripb.md explains both and says how to check them.
 
-:mod:`~robustness.decision.veripb.model` is what a reader has to trust beside the checker; nothing in
+:mod:`~robustness.decision.veripb.inequalities` is what a reader has to trust beside the checker; nothing in
 the other modules can make a wrong model unsatisfiable.
 """
 
@@ -15,10 +15,10 @@ import json
 
 from certificates import verify
 from certificates.graph import decode_graph
-from robustness.decision.veripb.derivation import derive_refutation
+from robustness.decision.veripb.inequalities import Model
 from robustness.decision.veripb.lemmas import derive_degree, derive_growth
-from robustness.decision.veripb.model import Model
 from robustness.decision.veripb.proof import SYNTAXES, Proof
+from robustness.decision.veripb.transcript import derive_refutation
 from robustness.errors import InvalidParameter
 
 __all__ = ["export"]
