@@ -1,7 +1,7 @@
 """What every answer has in common when it is shown: one line as text, a picture, and a page of evidence in notebooks.
 
-An answer says what it is about by a few methods. What draws it, :mod:`robustness.figures`, is built upon the answers; here
-it is known by name alone, and imported when something is drawn.
+An answer says what it is about by a few methods. What draws it, :mod:`robustness.figures`, is built upon the answers;
+here it is known by name alone, and imported when something is drawn.
 """
 
 from __future__ import annotations

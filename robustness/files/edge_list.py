@@ -11,29 +11,15 @@ import warnings
 
 from robustness.digraph import Digraph, GraphWarning
 from robustness.errors import InvalidGraph, UnreadableTopology
-from robustness.files.rows import Rows, arrows_of, is_number, rows_of
+from robustness.files.rows import Rows, is_number
 from robustness.files.text import texts_of, warn_lossy
 
-__all__ = ["decode", "encode", "graph_of_links", "links_of"]
+__all__ = ["encode", "graph_of_links", "links_of"]
 
 _DIRECTED = "# directed"
 
 _SOURCES = ("source", "from", "src", "u", "tail", "node1", "node_1", "user_a", "sender", "fromnodeid", "start")
 _TARGETS = ("target", "to", "dst", "v", "head", "node2", "node_2", "user_b", "receiver", "tonodeid", "end")
-
-
-def decode(data: bytes) -> Digraph:
-    """Return the graph of an edge list, or of a matrix, in text; labels of an edge list are text."""
-    from robustness.files.matrix import matrix_of_rows
-
-    arrows = arrows_of(data)
-    if arrows is not None:
-        return graph_of_links(*arrows, "arrows")
-    rows = rows_of(data)
-    if not rows.cells:
-        raise UnreadableTopology("an edge list holds at least one edge, and here is none")
-    matrix = matrix_of_rows(rows, in_text=True)
-    return matrix if matrix is not None else links_of(rows)
 
 
 def links_of(rows: Rows) -> Digraph:

@@ -30,7 +30,7 @@ from typing import BinaryIO
 
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidGraph, UnreadableTopology
-from robustness.files import edge_list, gml, graph6, matrix, node_link, topohub_names, xml_formats
+from robustness.files import edge_list, gml, graph6, matrix, node_link, table, topohub_names, xml_formats
 from robustness.files.text import one_line
 from robustness.files.writing import replace_file
 
@@ -57,7 +57,7 @@ class Format:
     encode: Callable[[Digraph], bytes]
 
 
-_EDGE_LIST = Format("edge list", edge_list.decode, edge_list.encode)
+_EDGE_LIST = Format("edge list", table.decode_text, edge_list.encode)
 
 #: Every format by its suffix.
 FORMATS: Mapping[str, Format] = MappingProxyType(
@@ -68,7 +68,7 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
         ".gml": Format("GML", gml.decode, gml.encode),
         ".edgelist": _EDGE_LIST,
         ".txt": _EDGE_LIST,
-        ".csv": Format("adjacency matrix", matrix.decode_csv, matrix.encode_csv),
+        ".csv": Format("adjacency matrix", table.decode_csv, matrix.encode_csv),
         ".npy": Format("adjacency matrix", matrix.decode_npy, matrix.encode_npy),
         ".g6": Format("graph6", graph6.decode_graph6, graph6.encode_graph6),
         ".s6": Format("sparse6", graph6.decode_sparse6, graph6.encode_sparse6),
