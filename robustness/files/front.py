@@ -30,7 +30,7 @@ from typing import BinaryIO
 
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidGraph, UnreadableTopology
-from robustness.files import edge_list, gml, graph6, matrix, node_link, table, topohub_names, xml_formats
+from robustness.files import gml, graph6, matrix, node_link, table, topohub_names, xml_formats
 from robustness.files.text import one_line
 from robustness.files.writing import replace_file
 
@@ -57,7 +57,7 @@ class Format:
     encode: Callable[[Digraph], bytes]
 
 
-_EDGE_LIST = Format("edge list", table.decode_text, edge_list.encode)
+_EDGE_LIST = Format("edge list", table.decode_text, table.encode_text)
 
 #: Every format by its suffix.
 FORMATS: Mapping[str, Format] = MappingProxyType(
