@@ -8,28 +8,19 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .options import (
-    algorithm_option,
-    graph_argument,
-    jobs_option,
-    json_option,
-    load_graph,
-    seed_option,
-    talk_options,
-    timeout_option,
-)
-from .output import Console, ProgressLine, graph_document, pass_console
-from .simulate import exit_code
+from .choices import THREAT_MODEL_NAMES
+from .exit_codes import ExitCode
+from .options import graph_argument, load_graph
+from .output import Console, ProgressLine, graph_document
+from .query import Query, query_options
 
 if TYPE_CHECKING:
     from robustness.simulation.attacks import Attack
+    from robustness.simulation.finding import Finding
 
-__all__ = ["MODELS", "SCHEMA", "command"]
+__all__ = ["SCHEMA", "command"]
 
 SCHEMA = "robustness/attack-result/1"
-
-# Written out so that --help need not import the library; a test compares them.
-MODELS = ("malicious", "malicious-local", "byzantine", "delayed", "delayed-local")
 
 
 @click.command("attack")
@@ -37,7 +28,7 @@ MODELS = ("malicious", "malicious-local", "byzantine", "delayed", "delayed-local
 @click.option("-f", "f", type=click.IntRange(min=0), default=1, show_default=True, help="How many nodes may lie.")
 @click.option(
     "--model",
-    type=click.Choice(MODELS),
+    type=click.Choice(THREAT_MODEL_NAMES),
     default="malicious",
     show_default=True,
     help="One lie for all; different lies (byzantine); or delays that show two faces. -local: F around every node.",
@@ -48,17 +39,11 @@ MODELS = ("malicious", "malicious-local", "byzantine", "delayed", "delayed-local
 @click.option("--steps", type=click.IntRange(min=1), default=1000, show_default=True, help="How long it is played.")
 @click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE", help="Write it.")
 @click.option("--expect", type=click.Choice(("agreement", "split")), help="Exit with 10 when it ends otherwise.")
-@json_option
-@algorithm_option
-@timeout_option
-@jobs_option
-@seed_option
-@talk_options
-@pass_console
-@click.pass_context
+@query_options(algorithm=True)
 def command(
     ctx: click.Context,
     console: Console,
+    query: Query,
     source: str,
     f: int,
     model: str,
@@ -68,11 +53,6 @@ def command(
     steps: int,
     output: Path | None,
     expect: str | None,
-    as_json: bool,
-    algorithm: str,
-    timeout: float | None,
-    jobs: int,
-    seed: int,
 ) -> None:
     """Find an attack of F nodes that splits GRAPH, carry it out, and write it to a file for 'simulate --attack'.
 
@@ -86,23 +66,26 @@ def command(
     require_different_files([source], [output])
     graph = load_graph(source)
     with ProgressLine(console) as line:
-        found = find_attack(
-            graph, f, model, algorithm=algorithm, time_limit=timeout, jobs=jobs, seed=seed, progress=line,
-            T=period, alpha=alpha, sigma=sigma,
-        )  # fmt: skip
+
+        def work() -> Finding:
+            return find_attack(
+                graph, f, model, algorithm=query.algorithm, T=period, alpha=alpha, sigma=sigma, **query.effort(line)
+            )
+
+        found = query.wait_for(work, line)
     if found.attack is not None:
         _carry_out(found.attack, steps)
         if output is not None:
             replace_file(output, (json.dumps(found.attack.as_dict(), indent=1) + "\n").encode())
             console.talk(f"wrote {output}")
-    if as_json:
+    if query.as_json:
         attack = None if found.attack is None else found.attack.as_dict()
         content = {"f": f, "model": model, "outcome": found.outcome, "reason": found.reason, "attack": attack}
         console.document(SCHEMA, {"graph": graph_document(graph), **content})
     else:
         color = {"agreement": "green", "split": "red", "undecided": "yellow"}[found.outcome]
         console.result(f"{click.style(found.outcome + ':', fg=color, bold=True)} {found.reason}")
-    ctx.exit(exit_code(found.outcome, expect or "split"))
+    ctx.exit(ExitCode.of_outcome(found.outcome, expect or "split"))
 
 
 def _carry_out(attack: Attack, steps: int) -> None:

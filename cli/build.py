@@ -12,6 +12,7 @@ import click
 from .exit_codes import ExitCode
 from .options import json_option, talk_options
 from .output import Console, graph_document, pass_console
+from .query import speaking
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -49,9 +50,7 @@ class FamilyGroup(click.Group):
 )
 @click.option("--list", "wants_list", is_flag=True, help="List all families with parameters and known values.")
 @json_option
-@talk_options
-@pass_console
-@click.pass_context
+@speaking
 def command(ctx: click.Context, console: Console, wants_list: bool, as_json: bool) -> None:
     """Build a graph of a family with known robustness, or a counterexample.
 

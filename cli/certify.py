@@ -7,17 +7,10 @@ from pathlib import Path
 import click
 
 from .exit_codes import ExitCode
-from .interruption import Overrun, interruptibly
-from .options import (
-    graph_argument,
-    jobs_option,
-    json_option,
-    load_graph,
-    seed_option,
-    talk_options,
-    timeout_option,
-)
-from .output import Console, ProgressLine, graph_document, pass_console
+from .interruption import Overrun
+from .options import graph_argument, load_graph
+from .output import Console, ProgressLine, graph_document
+from .query import Query, query_options
 
 __all__ = ["SCHEMA", "command"]
 
@@ -42,16 +35,11 @@ SCHEMA = "robustness/certify/1"
     help="veripb: also write OUTPUT.opb and OUTPUT.pbp for a third party's checker.",
 )
 @click.option("--veripb-version", type=click.Choice(["3.0", "1.1"]), default="3.0", show_default=True)
-@json_option
-@timeout_option
-@jobs_option
-@seed_option
-@talk_options
-@pass_console
-@click.pass_context
+@query_options()
 def command(
     ctx: click.Context,
     console: Console,
+    query: Query,
     source: str,
     r: int,
     s: int,
@@ -59,10 +47,6 @@ def command(
     canonical: Path | None,
     proof_format: str,
     veripb_version: str,
-    as_json: bool,
-    timeout: float | None,
-    jobs: int,
-    seed: int,
 ) -> None:
     """Decide whether GRAPH is (R,S)-robust and write a certificate of the answer.
 
@@ -80,10 +64,10 @@ def command(
     with ProgressLine(console) as line:
 
         def work() -> RobustnessResult:
-            return certify(graph, r, s, time_limit=timeout, jobs=jobs, seed=seed, progress=line)
+            return certify(graph, r, s, **query.effort(line))
 
         try:
-            result = interruptibly(work, timeout, line.tick)
+            result = query.wait_for(work, line)
         except Overrun:
             result = RobustnessResult(Verdict.UNDECIDED, r, s, stats={"reason": "the time limit was reached"})
     written: dict[str, str] = {}
@@ -100,7 +84,7 @@ def command(
             for suffix, text in ((".opb", model), (".pbp", proof)):
                 replace_file(output.with_name(output.name + suffix), text)
                 written[suffix[1:]] = str(output.with_name(output.name + suffix))
-    if as_json:
+    if query.as_json:
         console.document(
             SCHEMA,
             {

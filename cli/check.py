@@ -10,19 +10,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .exit_codes import ExitCode
-from .interruption import Overrun, interruptibly
-from .options import (
-    Seconds,
-    algorithm_option,
-    graph_argument,
-    jobs_option,
-    json_option,
-    load_graph,
-    seed_option,
-    talk_options,
-    timeout_option,
-)
-from .output import Console, ProgressLine, graph_document, pass_console, set_document, set_text
+from .interruption import Overrun
+from .options import Seconds, graph_argument, load_graph
+from .output import Console, ProgressLine, graph_document, set_document, set_text
+from .query import Query, query_options
 
 if TYPE_CHECKING:
     from robustness.digraph import Digraph
@@ -81,32 +72,21 @@ class Report:
 @graph_argument
 @click.option("-r", type=click.IntRange(min=0), help="Decide whether GRAPH is (R,S)-robust.")
 @click.option("-s", type=click.IntRange(min=1), help="With -r; 1 unless given, which is r-robustness.")
-@json_option
-@algorithm_option
-@timeout_option
 @click.option(
     "--s-timeout",
     type=Seconds(),
     metavar="SECONDS",
     help="Without -r: stop looking for the greatest s after this time, once r* is known.",
 )
-@jobs_option
-@seed_option
-@talk_options
-@pass_console
-@click.pass_context
+@query_options(algorithm=True)
 def command(
     ctx: click.Context,
     console: Console,
+    query: Query,
     source: str,
     r: int | None,
     s: int | None,
-    as_json: bool,
-    algorithm: str,
-    timeout: float | None,
     s_timeout: float | None,
-    jobs: int,
-    seed: int,
 ) -> None:
     """Decide robustness exactly, with evidence.
 
@@ -118,13 +98,12 @@ def command(
     if s_timeout is not None and r is not None:
         raise click.UsageError("--s-timeout is for the search for the greatest s: leave out -r.")
     graph = load_graph(source)
-    options = {"algorithm": algorithm, "jobs": jobs, "seed": seed}
     with ProgressLine(console) as line:
         if r is None:
-            report = _determine(graph, timeout, s_timeout, options, line)
+            report = _determine(graph, s_timeout, query, line)
         else:
-            report = _decide(graph, r, 1 if s is None else s, timeout, options, line)
-    if as_json:
+            report = _decide(graph, r, 1 if s is None else s, query, line)
+    if query.as_json:
         console.document(SCHEMA, report.document())
     else:
         console.result("\n".join(_lines(report, source, whole=console.is_verbose)))
@@ -134,62 +113,60 @@ def command(
     ctx.exit(ExitCode.of_verdict(report.verdict))
 
 
-def _decide(
-    graph: Digraph, r: int, s: int, timeout: float | None, options: dict[str, Any], line: ProgressLine
-) -> Report:
+def _decide(graph: Digraph, r: int, s: int, query: Query, line: ProgressLine) -> Report:
     from robustness.decision.front import check_rs_robustness
 
     started = time.perf_counter()
 
     def work() -> RobustnessResult:
-        return check_rs_robustness(graph, r, s, time_limit=timeout, progress=line, **options)
+        return check_rs_robustness(graph, r, s, algorithm=query.algorithm, **query.effort(line))
 
     try:
-        report = _report_on(graph, interruptibly(work, timeout, line.tick))
+        report = _report_on(graph, query.wait_for(work, line))
     except (KeyboardInterrupt, Overrun) as stop:
-        report = _stopped(graph, r, s, line, options, stop)
+        report = _stopped(graph, r, s, query, line, stop)
     report.is_decision, report.seconds = True, time.perf_counter() - started
     return report
 
 
-def _determine(
-    graph: Digraph, timeout: float | None, s_timeout: float | None, options: dict[str, Any], line: ProgressLine
-) -> Report:
+def _determine(graph: Digraph, s_timeout: float | None, query: Query, line: ProgressLine) -> Report:
     from robustness.decision.front import determine_robustness
 
     started = time.perf_counter()
 
     def work() -> RobustnessResult:
         return determine_robustness(
-            graph, time_limit=timeout, s_time_limit=s_timeout, progress=line, on_bounds=line.note_bounds, **options
+            graph,
+            algorithm=query.algorithm,
+            s_time_limit=s_timeout,
+            on_bounds=line.note_bounds,
+            **query.effort(line),
         )
 
     try:
-        report = _report_on(graph, interruptibly(work, timeout, line.tick))
+        report = _report_on(graph, query.wait_for(work, line))
     except (KeyboardInterrupt, Overrun) as stop:
-        report = _stopped(graph, 0, 1, line, options, stop)
+        report = _stopped(graph, 0, 1, query, line, stop)
         report.r = report.bounds.lower.value
     else:
         if report.verdict == "determined" and report.profile is None and graph.n <= PROFILE_NODES:
-            left = None if timeout is None else timeout - (time.perf_counter() - started)
-            _add_profile(report, left, options, line)
+            left = None if query.timeout is None else query.timeout - (time.perf_counter() - started)
+            if left is None or left > 0:
+                _add_profile(report, query.within(left), line)
     report.seconds = time.perf_counter() - started
     return report
 
 
-def _add_profile(report: Report, left: float | None, options: dict[str, Any], line: ProgressLine) -> None:
+def _add_profile(report: Report, query: Query, line: ProgressLine) -> None:
     from robustness.decision.front import robustness_profile
     from robustness.errors import InternalError, Undecided
     from robustness.results import Bound, Bounds
 
-    if left is not None and left <= 0:
-        return
-
     def work() -> Mapping[int, int]:
-        return robustness_profile(report.graph, time_limit=left, progress=line, **options)
+        return robustness_profile(report.graph, algorithm=query.algorithm, **query.effort(line))
 
     try:
-        profile = interruptibly(work, left, line.tick)
+        profile = query.wait_for(work, line)
     except (Undecided, Overrun):
         return
     except KeyboardInterrupt:
@@ -221,9 +198,7 @@ def _report_on(graph: Digraph, result: RobustnessResult) -> Report:
     )
 
 
-def _stopped(
-    graph: Digraph, r: int, s: int, line: ProgressLine, options: dict[str, Any], stop: BaseException
-) -> Report:
+def _stopped(graph: Digraph, r: int, s: int, query: Query, line: ProgressLine, stop: BaseException) -> Report:
     """Return what is proven when the search itself cannot tell any more."""
     is_interrupted = isinstance(stop, KeyboardInterrupt)
     bounds = line.bounds or _trivial_bounds(graph)
@@ -234,7 +209,7 @@ def _stopped(
         s,
         bounds,
         witness=bounds.upper.witness,
-        algorithm=options["algorithm"],
+        algorithm=query.algorithm,
         reason="interrupted" if is_interrupted else "the time limit was reached",
         is_interrupted=is_interrupted,
     )

@@ -9,19 +9,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .exit_codes import ExitCode
-from .options import (
-    algorithm_option,
-    graph_argument,
-    jobs_option,
-    load_graph,
-    seed_option,
-    talk_options,
-    timeout_option,
-)
-from .output import Console, ProgressLine, pass_console
+from .options import graph_argument, load_graph
+from .output import Console, ProgressLine
+from .query import Query, query_options
 
 if TYPE_CHECKING:
     from robustness.digraph import Digraph
+    from robustness.results import RobustnessResult
 
 __all__ = ["command"]
 
@@ -45,25 +39,16 @@ __all__ = ["command"]
     metavar="FILE",
     help="The picture: .svg, .png or .pdf.",
 )
-@algorithm_option
-@timeout_option
-@jobs_option
-@seed_option
-@talk_options
-@pass_console
-@click.pass_context
+@query_options(json=False, algorithm=True)
 def command(
     ctx: click.Context,
     console: Console,
+    query: Query,
     source: str,
     r: int | None,
     s: int | None,
     attack_file: Path | None,
     output: Path,
-    algorithm: str,
-    timeout: float | None,
-    jobs: int,
-    seed: int,
 ) -> None:
     """Draw GRAPH: nodes where the file places them, or S1 left and S2 right; arcs that count are drawn strong.
 
@@ -89,9 +74,11 @@ def command(
         from robustness.results import Verdict
 
         with ProgressLine(console) as line:
-            answer = check_rs_robustness(
-                graph, r, s or 1, algorithm=algorithm, time_limit=timeout, jobs=jobs, seed=seed, progress=line
-            )
+
+            def work() -> RobustnessResult:
+                return check_rs_robustness(graph, r, s or 1, algorithm=query.algorithm, **query.effort(line))
+
+            answer = query.wait_for(work, line)
         console.result(answer.summary())
         undecided = answer.verdict is Verdict.UNDECIDED
     elif attack_file is not None:

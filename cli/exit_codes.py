@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import enum
 
+from .interruption import Overrun
+
 __all__ = ["ExitCode"]
 
 
@@ -39,6 +41,15 @@ class ExitCode(enum.IntEnum):
         }[verdict]
 
     @classmethod
+    def of_outcome(cls, outcome: str, expected: str | None) -> ExitCode:
+        """Return the code of a simulation's outcome: undecided is never a verdict, and another one than expected
+        refutes.
+        """
+        if outcome == "undecided":
+            return cls.UNDECIDED
+        return cls.REFUTED if expected not in (None, outcome) else cls.DONE
+
+    @classmethod
     def of_exception(cls, problem: BaseException) -> ExitCode:
         """Return the code of an exception that reached the top. The only place that decides this."""
         from certificates.errors import MalformedCertificate, RejectedCertificate
@@ -47,7 +58,7 @@ class ExitCode(enum.IntEnum):
         match problem:
             case KeyboardInterrupt():
                 return cls.INTERRUPTED
-            case Undecided():
+            case Undecided() | Overrun():
                 return cls.UNDECIDED
             case RejectedCertificate():
                 return cls.REFUTED

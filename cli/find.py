@@ -10,9 +10,9 @@ import click
 
 from .build import encode_with_attributes, write_graph
 from .exit_codes import ExitCode
-from .interruption import Overrun, interruptibly
-from .options import jobs_option, json_option, seed_option, talk_options, timeout_option
-from .output import Console, graph_document, pass_console
+from .interruption import Overrun
+from .output import Console, graph_document
+from .query import Query, query_options
 
 if TYPE_CHECKING:
     from robustness.graph_search import FindResult
@@ -52,26 +52,17 @@ class NodeNumbers(click.ParamType):  # type: ignore[type-arg]  # generic only fr
 @click.option("--directed", is_flag=True, help="Search among digraphs.")
 @click.option("--fewest-edges", is_flag=True, help="Look for a graph with the fewest edges.")
 @click.option("-o", "--output", type=click.Path(dir_okay=False), metavar="FILE", help="Write the graph there.")
-@json_option
-@timeout_option
-@jobs_option
-@seed_option
-@talk_options
-@pass_console
-@click.pass_context
+@query_options()
 def command(
     ctx: click.Context,
     console: Console,
+    query: Query,
     nodes: range,
     satisfies: tuple[str, ...],
     violates: tuple[str, ...],
     directed: bool,
     fewest_edges: bool,
     output: str | None,
-    as_json: bool,
-    timeout: float | None,
-    jobs: int,
-    seed: int,
 ) -> None:
     r"""Search for a graph that has, or has not, given properties.
 
@@ -91,18 +82,18 @@ def command(
             violates,
             directed=directed,
             minimise="edges" if fewest_edges else None,
-            time_limit=timeout,
-            jobs=jobs,
-            seed=seed,
+            time_limit=query.timeout,
+            jobs=query.jobs,
+            seed=query.seed,
         )
 
     try:
-        result = interruptibly(work, timeout)
+        result = query.wait_for(work)
     except Overrun:
         result = FindResult(FindVerdict.UNDECIDED, stats={"reason": "the time limit was reached"})
     if output is not None and result.graph is not None:
         write_graph(result.graph, output)
-    if as_json:
+    if query.as_json:
         console.document(SCHEMA, _document(result))
     else:
         _print(console, result, nodes, output)

@@ -30,6 +30,9 @@ _abandoned: list[threading.Thread] = []
 class Overrun(Exception):
     """The work did not keep its time limit."""
 
+    def __str__(self) -> str:
+        return "the time limit was reached: raise --timeout"
+
 
 def interruptibly(
     work: Callable[[], _Result], limit: float | None = None, while_waiting: Callable[[], None] = lambda: None

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .exit_codes import ExitCode
-from .interruption import Overrun, interruptibly
-from .options import algorithm_option, jobs_option, json_option, seed_option, talk_options, timeout_option
-from .output import Console, ProgressLine, pass_console, set_document, set_text
+from .interruption import Overrun
+from .output import Console, ProgressLine, set_document, set_text
+from .query import Query, query_options
 
 if TYPE_CHECKING:
     from robustness.time_varying import JointResult, TimeVaryingGraph, Violation
@@ -81,17 +81,11 @@ class Report:
 @click.option("--picture", type=click.Path(dir_okay=False), metavar="FILE", help="Draw windows and curve (PNG, SVG).")
 @click.option("-o", "--certificate", type=click.Path(path_type=Path), metavar="FILE", help="Where a certificate goes.")
 @click.option("--canonical", type=click.Path(path_type=Path), metavar="FILE", help="Where the canonical SEQ goes.")
-@json_option
-@algorithm_option
-@timeout_option
-@jobs_option
-@seed_option
-@talk_options
-@pass_console
-@click.pass_context
+@query_options(algorithm=True)
 def command(
     ctx: click.Context,
     console: Console,
+    query: Query,
     source: str,
     r: int,
     s: int,
@@ -105,11 +99,6 @@ def command(
     picture: str | None,
     certificate: Path | None,
     canonical: Path | None,
-    as_json: bool,
-    algorithm: str,
-    timeout: float | None,
-    jobs: int,
-    seed: int,
 ) -> None:
     """Decide whether a time-varying network is jointly (R,S)-robust.
 
@@ -136,21 +125,19 @@ def command(
     require_different_files([source], [picture, certificate, canonical])
     sequence = read_sequence(source, period=period, step=step, both_ways=both_ways)
     with ProgressLine(console) as line:
-        options = {"algorithm": algorithm, "jobs": jobs, "seed": seed, "progress": line}
-        survey = Survey(sequence, r, s, tau, Clock(timeout), options)
+        survey = Survey(sequence, r, s, tau, Clock(query.timeout), query, line)
         drawn = picture is not None
         try:
-            report = interruptibly(
+            report = query.wait_for(
                 lambda: survey.report(
                     window, all_windows or drawn, with_curve or drawn, drawn, certified=certificate is not None
                 ),
-                timeout,
-                line.tick,
+                line,
             )
         except Overrun:
             report = survey.overrun(window)
     written = _write(report, certificate, canonical)
-    if as_json:
+    if query.as_json:
         asked = {} if certificate is canonical is None else {"files": written}
         console.document(SCHEMA, report.document() | asked)
     else:
@@ -188,7 +175,8 @@ class Survey:
     s: int
     tau: int | None
     clock: Clock
-    options: Mapping[str, Any]
+    query: Query
+    line: ProgressLine
 
     def report(
         self, window: int | None, all_windows: bool, with_curve: bool, drawn: bool, *, certified: bool = False
@@ -221,8 +209,8 @@ class Survey:
             window=window,
             tau=self.tau,
             all_windows=all_windows,
-            time_limit=self.clock.left(),
-            **self.options,
+            algorithm=self.query.algorithm,
+            **self._effort(),
         )
 
     def _curve(self) -> Mapping[int, int | None] | None:
@@ -231,15 +219,17 @@ class Survey:
         from robustness.time_varying import joint_curve
 
         try:
-            return joint_curve(self.sequence, self.s, time_limit=self.clock.left(), **self.options)
+            return joint_curve(self.sequence, self.s, algorithm=self.query.algorithm, **self._effort())
         except Undecided:
             return None
 
     def _certificate(self, result: JointResult) -> bytes | None:
         from robustness.time_varying.certification import joint_certificate
 
-        effort = {name: value for name, value in self.options.items() if name != "algorithm"}
-        return joint_certificate(self.sequence, result, time_limit=self.clock.left(), **effort)
+        return joint_certificate(self.sequence, result, **self._effort())
+
+    def _effort(self) -> dict[str, Any]:
+        return self.query.within(self.clock.left()).effort(self.line)
 
 
 def _write(report: Report, certificate: Path | None, canonical: Path | None) -> dict[str, str]:

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 import click
 
+from .choices import THREAT_MODEL_NAMES
 from .exit_codes import ExitCode
 from .interruption import interruptibly
 from .options import jobs_option, seed_option, timeout_option
 from .output import Console
-from .tolerance import MODELS
 
 if TYPE_CHECKING:
     from robustness.surveying import Gate, Row, Survey
@@ -41,7 +41,7 @@ _OPTIONS: tuple[Callable[[Any], Any], ...] = (
     click.option(
         "--model",
         "models",
-        type=click.Choice(MODELS),
+        type=click.Choice(THREAT_MODEL_NAMES),
         multiple=True,
         help="Threat models to look at; all unless given.",
     ),
@@ -120,7 +120,7 @@ def many_networks_options(command: Callable[..., Any]) -> Callable[..., Any]:
         from robustness.surveying import Gate
 
         gate = Gate(r, 1 if s is None else s, survive)
-        looked_at = () if no_models else models or MODELS
+        looked_at = () if no_models else models or THREAT_MODEL_NAMES
         networks = ManyNetworks(wanted, gate, looked_at, certificates, timeout, total_timeout, jobs, seed)
         return command(*arguments, networks=networks, **others)
 

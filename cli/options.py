@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from .choices import ALGORITHM_NAMES
 from .output import Console
 
 if TYPE_CHECKING:
     from robustness.digraph import Digraph
 
 __all__ = [
-    "ALGORITHM_NAMES",
     "Seconds",
     "algorithm_option",
     "graph_argument",
@@ -28,9 +28,6 @@ __all__ = [
 ]
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
-
-#: ``auto`` and the names in ``robustness.ALGORITHMS``; written out so that --help need not import the library.
-ALGORITHM_NAMES = ("auto", "exhaustive", "transform", "subset-search", "milp", "cp-sat")
 
 
 class Seconds(click.ParamType):  # type: ignore[type-arg]  # generic only from click 8.4 on

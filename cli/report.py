@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from .many_networks import ManyNetworks, exit_code, many_networks_options, run_survey
-from .options import talk_options
-from .output import Console, pass_console
+from .output import Console
+from .query import speaking
 
 if TYPE_CHECKING:
     from robustness.surveying.row import Findings
@@ -29,9 +29,7 @@ __all__ = ["command"]
 )
 @click.option("--title", default="Robustness report", show_default=True, help="The heading of the page.")
 @click.option("--no-pictures", is_flag=True, help="Neither networks nor attacks are drawn: a smaller page.")
-@talk_options
-@pass_console
-@click.pass_context
+@speaking
 def command(
     ctx: click.Context, console: Console, networks: ManyNetworks, output: Path, title: str, no_pictures: bool
 ) -> None:

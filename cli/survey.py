@@ -7,8 +7,9 @@ from pathlib import Path
 import click
 
 from .many_networks import ManyNetworks, exit_code, many_networks_options, run_survey
-from .options import json_option, talk_options
-from .output import Console, pass_console
+from .options import json_option
+from .output import Console
+from .query import speaking
 
 __all__ = ["SCHEMA", "command"]
 
@@ -30,9 +31,7 @@ _NAMES = tuple(_KINDS.values())
     help="A journal of finished rows: the same command goes on where it was stopped or killed.",
 )
 @json_option
-@talk_options
-@pass_console
-@click.pass_context
+@speaking
 def command(
     ctx: click.Context,
     console: Console,

@@ -12,22 +12,21 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from .choices import THREAT_MODEL_NAMES
 from .exit_codes import ExitCode
-from .interruption import Overrun, interruptibly
-from .options import graph_argument, jobs_option, json_option, load_graph, seed_option, talk_options, timeout_option
-from .output import Console, ProgressLine, graph_document, pass_console, set_text
+from .interruption import Overrun
+from .options import graph_argument, load_graph
+from .output import Console, ProgressLine, graph_document, set_text
+from .query import Query, query_options
 
 if TYPE_CHECKING:
     from robustness.digraph import Digraph
     from robustness.threat_models import ToleranceResult, ToleranceTable
     from robustness.time_varying import TimeVaryingGraph
 
-__all__ = ["MODELS", "SCHEMA", "command"]
+__all__ = ["SCHEMA", "command"]
 
 SCHEMA = "robustness/tolerance/1"
-
-#: The names in ``robustness.threat_models.THREAT_MODELS``; written out so that --help need not import the library.
-MODELS = ("malicious", "malicious-local", "byzantine", "delayed", "delayed-local")
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +72,7 @@ class Report:
 
 @click.command("tolerance")
 @graph_argument
-@click.option("--model", type=click.Choice(MODELS), help="One threat model instead of all.")
+@click.option("--model", type=click.Choice(THREAT_MODEL_NAMES), help="One threat model instead of all.")
 @click.option("--require", "required", type=click.IntRange(min=0), metavar="F", help="A gate: is F survived?")
 @click.option(
     "--tau",
@@ -91,16 +90,11 @@ class Report:
 @click.option(
     "-o", "--output", type=click.Path(file_okay=False, path_type=Path), metavar="DIR", help="Write certificates there."
 )
-@json_option
-@timeout_option
-@jobs_option
-@seed_option
-@talk_options
-@pass_console
-@click.pass_context
+@query_options()
 def command(
     ctx: click.Context,
     console: Console,
+    query: Query,
     source: str,
     model: str | None,
     required: int | None,
@@ -109,10 +103,6 @@ def command(
     gap: int | None,
     period: int | None,
     output: Path | None,
-    as_json: bool,
-    timeout: float | None,
-    jobs: int,
-    seed: int,
 ) -> None:
     """What does GRAPH survive? For each threat model the largest f guaranteed and the smallest refuted.
 
@@ -146,13 +136,11 @@ def command(
         finished: list[ToleranceResult] = []
 
         def work() -> Report:
-            return _examine(
-                network, graph, model, (tau, delay, gap), required, timeout, jobs, seed, line, finished.append
-            )
+            return _examine(network, graph, model, (tau, delay, gap), required, query, line, finished.append)
 
         is_interrupted = False
         try:
-            report = interruptibly(work, timeout, line.tick)
+            report = query.wait_for(work, line)
         except (Overrun, KeyboardInterrupt) as stop:
             is_interrupted = isinstance(stop, KeyboardInterrupt)
             if is_interrupted and not finished:
@@ -160,8 +148,8 @@ def command(
             why = "interrupted" if is_interrupted else "the time limit was reached"
             report = _stopped(network, graph, model, tau, required, time.perf_counter() - started, finished, why)
     if output is not None:
-        _write_evidence(console, report, output, timeout, jobs, seed)
-    if as_json:
+        _write_evidence(console, report, output, query)
+    if query.as_json:
         console.document(SCHEMA, report.document())
     else:
         console.result("\n".join(_lines(report, source, whole=console.is_verbose)))
@@ -188,9 +176,7 @@ def _examine(
     model: str | None,
     ages: tuple[int | None, int | None, int | None],
     required: int | None,
-    timeout: float | None,
-    jobs: int,
-    seed: int,
+    query: Query,
     line: ProgressLine,
     on_result: Callable[[ToleranceResult], None],
 ) -> Report:
@@ -201,22 +187,17 @@ def _examine(
 
     started = time.perf_counter()
     tau, delay, gap = ages
-    found = tolerance(
-        network, model, tau=tau, delay=delay, gap=gap, time_limit=timeout, jobs=jobs, seed=seed, progress=line,
-        on_result=on_result,
-    )  # fmt: skip
+    found = tolerance(network, model, tau=tau, delay=delay, gap=gap, on_result=on_result, **query.effort(line))
     table = found if isinstance(found, ToleranceTable) else ToleranceTable(graph, (found,))
     # Playing an attack is a second look at evidence that was checked before; past the user's limit it is left out.
-    ends = math.inf if timeout is None else started + timeout
+    ends = math.inf if query.timeout is None else started + query.timeout
     confirmed = {result.model: confirm(result) if time.perf_counter() < ends else None for result in table.results}
     if False in confirmed.values():
         raise InternalError(f"an attack from checked evidence did not split the network ({confirmed}): please report")
     return Report(graph, table, confirmed, required, time.perf_counter() - started)
 
 
-def _write_evidence(
-    console: Console, report: Report, folder: Path, timeout: float | None, jobs: int, seed: int
-) -> None:
+def _write_evidence(console: Console, report: Report, folder: Path, query: Query) -> None:
     """Write the canonical graph, and for each model its certificates and its attack."""
     from robustness.files import replace_file
     from robustness.threat_models import ToleranceCertificates, certify_tolerance
@@ -230,10 +211,10 @@ def _write_evidence(
     for result in report.table.results:
 
         def work(result: ToleranceResult = result) -> ToleranceCertificates:
-            return certify_tolerance(result, time_limit=timeout, jobs=jobs, seed=seed)
+            return certify_tolerance(result, time_limit=query.timeout, jobs=query.jobs, seed=query.seed)
 
         try:
-            found = interruptibly(work, timeout)
+            found = query.wait_for(work)
         except Overrun:
             found = ToleranceCertificates(None, None)
         claims = (("guaranteed", result.guaranteed, found.guaranteed), ("refuted", result.refuted, found.refuted))
@@ -268,7 +249,7 @@ def _stopped(
 
     reason = Reason(Standing.UNDECIDED, 0, "nothing was decided", f"none: {why}", "none")
     sequence = network if isinstance(network, TimeVaryingGraph) else None
-    names = (model,) if model is not None else MODELS if sequence is None else MODELS_OVER_TIME
+    names = (model,) if model is not None else THREAT_MODEL_NAMES if sequence is None else MODELS_OVER_TIME
     known = {result.model: result for result in finished}
     results = tuple(
         known[name]

@@ -7,26 +7,18 @@ from typing import TYPE_CHECKING
 
 import click
 
+from .choices import FACES
 from .exit_codes import ExitCode
-from .options import graph_argument, json_option, load_graph, talk_options
-from .output import Console, pass_console
+from .options import graph_argument, json_option, load_graph
+from .output import Console
+from .query import speaking
 
 if TYPE_CHECKING:
     from certificates.questions import Claim
 
-__all__ = ["FACES", "SCHEMA", "command"]
+__all__ = ["SCHEMA", "command"]
 
 SCHEMA = "robustness/verify/1"
-
-#: How many faces a malicious node has under a threat model, and how malicious nodes are bounded. Written out so that
-#: --help need not import the library; a test compares them.
-FACES = {
-    "malicious": (1, "total"),
-    "malicious-local": (1, "local"),
-    "byzantine": (2, "total"),
-    "delayed": (2, "total"),
-    "delayed-local": (2, "local"),
-}
 
 
 @click.command("verify")
@@ -43,9 +35,7 @@ FACES = {
 @click.option("-f", "f", type=int, help="The number of malicious nodes that the claim must be about, or imply.")
 @click.option("--model", type=click.Choice(tuple(FACES)), help="With -f: the threat model that it must be about.")
 @json_option
-@talk_options
-@pass_console
-@click.pass_context
+@speaking
 def command(
     ctx: click.Context,
     console: Console,

@@ -96,7 +96,7 @@ def test_an_overrun_is_undecided_and_writes_nothing(monkeypatch: pytest.MonkeyPa
     def overrun(*_: object) -> None:
         raise Overrun
 
-    monkeypatch.setattr("cli.certify.interruptibly", overrun)
+    monkeypatch.setattr("cli.query.interruptibly", overrun)
     outcome = certify("-r", 2, "-o", target, "--timeout", "1")
     assert outcome.exit_code == 30
     assert "nothing is certified: the time limit was reached" in outcome.stdout

@@ -247,7 +247,7 @@ def test_a_compiler_that_does_not_stop_is_undecided(monkeypatch: pytest.MonkeyPa
     def endless(*_: object, **__: object) -> None:
         raise Overrun
 
-    monkeypatch.setattr("cli.joint.interruptibly", endless)
+    monkeypatch.setattr("cli.query.interruptibly", endless)
     outcome = joint("-r", "2", "--window", "3", "--timeout", "1", "--tau", "4", "--json")
     found = json.loads(outcome.stdout)
     assert (outcome.exit_code, found["verdict"], found["asked_window"]) == (30, "undecided", 3)

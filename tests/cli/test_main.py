@@ -15,7 +15,7 @@ import pytest
 from click.testing import CliRunner
 
 import robustness as rb
-from cli import main, options
+from cli import choices, main
 from cli.output import Console, ProgressLine, set_text
 from robustness.limits import Progress
 
@@ -64,7 +64,7 @@ class TestCommands:
         assert "internal error, not a verdict: AttributeError" in outcome.stderr
 
     def test_algorithm_names_are_those_of_the_registry(self) -> None:
-        assert options.ALGORITHM_NAMES == ("auto", *rb.ALGORITHMS)
+        assert choices.ALGORITHM_NAMES == ("auto", *rb.ALGORITHMS)
 
     def test_version(self) -> None:
         outcome = CliRunner().invoke(main.robustness, ["--version"])

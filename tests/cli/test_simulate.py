@@ -11,8 +11,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 import robustness as rb
-from cli import attack as attack_command
-from cli import simulate as simulate_command
+from cli import choices, simulate_runs
 from cli.exit_codes import ExitCode
 from cli.main import robustness
 from robustness.files import encode_topology
@@ -39,12 +38,12 @@ def document(*arguments: str | Path, graph: bytes | None = None) -> dict[str, An
 
 
 def test_the_choices_are_those_of_the_library() -> None:
-    assert sorted(simulate_command._RULES) == sorted(RULES)
-    assert sorted(simulate_command._MODELS) == sorted(FAULT_MODELS)
-    assert sorted(simulate_command._SCHEDULES) == sorted(SCHEDULES)
-    assert sorted(simulate_command._ADVERSARIES) == sorted([*ADVERSARIES, "auto"])
-    assert sorted(simulate_command._EXPERIMENTS) == sorted(EXPERIMENTS)
-    assert attack_command.MODELS == ATTACK_MODELS == tuple(THREAT_MODELS)
+    assert sorted(choices.RULE_NAMES) == sorted(RULES)
+    assert sorted(choices.FAULT_MODEL_NAMES) == sorted(FAULT_MODELS)
+    assert sorted(choices.SCHEDULE_NAMES) == sorted(SCHEDULES)
+    assert sorted(choices.ADVERSARY_NAMES) == sorted([*ADVERSARIES, "auto"])
+    assert sorted(choices.EXPERIMENT_NAMES) == sorted(EXPERIMENTS)
+    assert choices.THREAT_MODEL_NAMES == ATTACK_MODELS == tuple(THREAT_MODELS)
 
 
 class TestSimulate:
@@ -160,11 +159,11 @@ class TestSimulate:
     def test_nodes_are_named_by_label(self) -> None:
         graph = rb.Digraph([1, "1", "b", (0, 1)], [])
         for text, label in (("1", 1), ('"1"', "1"), ("b", "b"), ("[0, 1]", (0, 1))):
-            assert simulate_command.node_named(graph, text) == label
-        assert simulate_command.node_named(rb.Digraph(["1"], []), "1") == "1"
+            assert simulate_runs.node_named(graph, text) == label
+        assert simulate_runs.node_named(rb.Digraph(["1"], []), "1") == "1"
         for text in ("true", "1.0", "c", "{}", "null", "[" * 100_000):
             with pytest.raises(ValueError, match="named by its label"):
-                simulate_command.node_named(graph, text)
+                simulate_runs.node_named(graph, text)
 
     def test_save_replay_and_plot(self, tmp_path: Path) -> None:
         saved, picture = tmp_path / "run.json", tmp_path / "run.png"

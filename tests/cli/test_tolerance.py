@@ -15,10 +15,10 @@ import pytest
 from click.testing import CliRunner, Result
 
 from certificates import verify, verify_tolerance
+from cli.choices import THREAT_MODEL_NAMES as MODELS
 from cli.exit_codes import ExitCode
 from cli.interruption import Overrun
 from cli.main import robustness
-from cli.tolerance import MODELS
 from robustness.files import encode_topology
 from robustness.threat_models import THREAT_MODELS, ThreatModel, asking
 from robustness.threat_models.results import ToleranceResult

@@ -10,8 +10,8 @@ import pytest
 from click.testing import CliRunner, Result
 
 import robustness as rb
+from cli.choices import FACES
 from cli.main import robustness
-from cli.verify import FACES
 from robustness.decision.certification import certify
 from robustness.files import encode_topology, write_topology
 from robustness.threat_models import THREAT_MODELS

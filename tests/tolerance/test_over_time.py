@@ -239,7 +239,7 @@ class TestCommand:
         def overrun(*_: object) -> None:
             raise Overrun
 
-        monkeypatch.setattr("cli.tolerance.interruptibly", overrun)
+        monkeypatch.setattr("cli.query.interruptibly", overrun)
         code, text = self.run("--tau", "2", "--delay", "1", "--json")
         assert code == ExitCode.UNDECIDED
         assert [model["model"] for model in json.loads(text)["models"]] == ["delayed", "delayed-local"]

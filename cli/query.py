@@ -1,0 +1,93 @@
+"""What every command that decides something is asked beside its own options: how to answer, and how hard to work."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import wraps
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from .interruption import interruptibly
+from .options import algorithm_option, jobs_option, json_option, seed_option, talk_options, timeout_option
+from .output import ProgressLine, pass_console
+
+if TYPE_CHECKING:
+    from robustness.limits import Progress
+
+__all__ = ["Query", "query_options", "speaking"]
+
+_Command = TypeVar("_Command", bound=Callable[..., Any])
+_Result = TypeVar("_Result")
+
+
+@dataclass(frozen=True, slots=True)
+class Query:
+    """The values of the common options.
+
+    Attributes
+    ----------
+    as_json : bool
+        Answer in one JSON document.
+    algorithm : str
+        A name in ``choices.ALGORITHM_NAMES``.
+    timeout : float or None
+        Seconds; what is not decided by then is undecided.
+    jobs, seed : int
+        Threads; the seed of every random choice.
+    """
+
+    as_json: bool = False
+    algorithm: str = "auto"
+    timeout: float | None = None
+    jobs: int = 1
+    seed: int = 0
+
+    def within(self, seconds: float | None) -> Query:
+        """Return the same query with another time limit: what is left for the next part of a command."""
+        return replace(self, timeout=seconds)
+
+    def effort(self, progress: Callable[[Progress], None] | None = None) -> dict[str, Any]:
+        """Return what every front of the library takes about how hard to work: the whole of it, by its keywords."""
+        return {"time_limit": self.timeout, "jobs": self.jobs, "seed": self.seed, "progress": progress}
+
+    def wait_for(self, work: Callable[[], _Result], line: ProgressLine | None = None) -> _Result:
+        """Return what ``work()`` returns; Ctrl-C and the time limit end the wait, as ``interruptibly`` says."""
+        return interruptibly(work, self.timeout) if line is None else interruptibly(work, self.timeout, line.tick)
+
+
+def speaking(command: _Command) -> _Command:
+    """Add -q, -v and --color, and pass the context and the console as the first two arguments."""
+    return talk_options(pass_console(click.pass_context(command)))  # type: ignore[return-value]
+
+
+def query_options(*, json: bool = True, algorithm: bool = False) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Add the common options to a command, which gets the context, the console and a :class:`Query`.
+
+    Parameters
+    ----------
+    json, algorithm : bool
+        Whether the command has --json and --algorithm.
+    """
+
+    def add(command: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(command)
+        def with_query(
+            *arguments: Any,
+            timeout: float | None,
+            jobs: int,
+            seed: int,
+            as_json: bool = False,
+            algorithm: str = "auto",
+            **own: Any,
+        ) -> Any:
+            return command(*arguments, Query(as_json, algorithm, timeout, jobs, seed), **own)
+
+        wrapped: Callable[..., Any] = speaking(with_query)
+        for option in (seed_option, jobs_option, timeout_option):
+            wrapped = option(wrapped)
+        wrapped = algorithm_option(wrapped) if algorithm else wrapped
+        return json_option(wrapped) if json else wrapped
+
+    return add
