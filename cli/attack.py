@@ -29,7 +29,7 @@ __all__ = ["MODELS", "SCHEMA", "command"]
 SCHEMA = "robustness/attack-result/1"
 
 # Written out so that --help need not import the library; a test compares them.
-MODELS = ("malicious", "malicious-local", "byzantine", "delayed", "delayed-local")
+MODELS = ("malicious", "malicious-local", "byzantine", "byzantine-local", "delayed", "delayed-local")
 
 
 @click.command("attack")
