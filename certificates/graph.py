@@ -119,7 +119,7 @@ def _arcs(hears: Sequence[Sequence[int]]) -> list[tuple[int, int]]:
 def _from_canonical(document: dict[str, Any]) -> CanonicalGraph:
     if set(document) != {"arcs", "format", "labels"}:
         raise MalformedGraph("a canonical graph has exactly the keys arcs, format and labels")
-    labels = _labels(document["labels"])
+    labels = valid_labels(document["labels"])
     keys = [label_key(label) for label in labels]
     if any(not a < b for a, b in pairwise(keys)):
         raise MalformedGraph("labels stand in strictly ascending canonical order")
@@ -147,8 +147,8 @@ def _from_node_link(document: dict[str, Any]) -> CanonicalGraph:
     if "edges" in document and "links" in document:
         raise MalformedGraph("a node-link document has 'edges' or 'links', not both")
     try:
-        names = _labels([node["id"] for node in nodes])
-        pairs = [tuple(_labels([edge["source"], edge["target"]])) for edge in edges]
+        names = valid_labels([node["id"] for node in nodes])
+        pairs = [tuple(valid_labels([edge["source"], edge["target"]])) for edge in edges]
     except (KeyError, TypeError):
         raise MalformedGraph("every node has an 'id', every edge a 'source' and a 'target'") from None
     labels = sorted(names, key=label_key)
@@ -171,7 +171,7 @@ def _graph(labels: Sequence[Label], hears: Sequence[Sequence[int]]) -> Canonical
     return CanonicalGraph(tuple(labels), tuple(map(tuple, hears)), sha256)
 
 
-def _labels(values: object) -> list[Label]:
+def valid_labels(values: object) -> list[Label]:
     if not isinstance(values, list):
         raise MalformedGraph("labels is a list")
     return [_label(value, 0) for value in values]

@@ -17,7 +17,7 @@ from typing import Any
 
 from certificates.envelope import MAX_CERTIFICATE_BYTES, kind_of, require_keys, shown, split_header
 from certificates.errors import CertificateError, MalformedCertificate, MalformedGraph, Misuse, RejectedCertificate
-from certificates.graph import Label, _labels, digest, encode_graph, label_key
+from certificates.graph import Label, digest, encode_graph, label_key, valid_labels
 from certificates.strict_json import parse
 from certificates.verification import VerifiedClaim, verify
 
@@ -196,7 +196,7 @@ def _decode_sequence(data: bytes) -> _Sequence:
         raise MalformedGraph("a sequence is an object with exactly the keys format, labels, period and steps")
     if document["format"] != SEQUENCE_FORMAT:
         raise MalformedGraph(f"the format of a sequence is {SEQUENCE_FORMAT!r}, not {shown(document['format'])}")
-    labels = tuple(_labels(document["labels"]))
+    labels = tuple(valid_labels(document["labels"]))
     if any(not a < b for a, b in pairwise(map(label_key, labels))):
         raise MalformedGraph("labels stand in strictly ascending canonical order")
     rows, period = document["steps"], document["period"]

@@ -43,7 +43,7 @@ def command(
     """
     from robustness.files.writing import require_different_files
     from robustness.reporting.front import report_of, require_drawing
-    from robustness.reporting.words import headline
+    from robustness.reporting.wording import headline
 
     require_drawing(not no_pictures)
     require_different_files(networks.paths, [output])

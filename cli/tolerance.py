@@ -307,7 +307,7 @@ def _gate(report: Report) -> str:
 
 
 def _table(table: ToleranceTable) -> Iterator[str]:
-    from robustness.threat_models.words import number
+    from robustness.threat_models.summaries import number
 
     yield f"{'model':<17}{'guaranteed':>10}{'refuted':>9}  between"
     for result in table.results:

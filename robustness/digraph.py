@@ -116,6 +116,12 @@ class Digraph:
         graph.add_edges_from((self.labels[u], self.labels[v]) for u, v in self.arcs())
         return graph
 
+    def without(self, removed: frozenset[int]) -> Digraph:
+        """Return the graph without the nodes whose ids are in ``removed``."""
+        kept = [label for i, label in enumerate(self.labels) if i not in removed]
+        arcs = [(self.labels[u], self.labels[v]) for u, v in self.arcs() if u not in removed and v not in removed]
+        return Digraph(kept, arcs, directed=self.directed)
+
     @property
     def n(self) -> int:
         """The number of nodes."""

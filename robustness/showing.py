@@ -1,12 +1,14 @@
 """What every answer has in common when it is shown: one line as text, a picture, and a page of evidence in notebooks.
 
-An answer says what it is about by a few methods; drawing itself is imported when something is drawn.
+An answer says what it is about by a few methods. What draws it, :mod:`robustness.figures`, is built upon the answers;
+here it is known by name alone, and imported when something is drawn.
 """
 
 from __future__ import annotations
 
 import base64
 import html
+import importlib
 import io
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -85,22 +87,19 @@ class Shown:
         MissingExtra
             When matplotlib is not installed.
         """
-        from robustness.figures.network import draw
-
         graph = self.pictured() if G is None else G
         if graph is None:
             raise InvalidParameter("this answer carries no graph: pass the one it is about, plot(G)")
-        return draw(graph, self, pos=pos, ax=ax)
+        axes: Axes = _drawing("network").draw(graph, self, pos=pos, ax=ax)
+        return axes
 
     def _small_picture(self) -> str:
         """Return a small picture as HTML; empty where there is nothing to draw, or nothing to draw with."""
-        from robustness.figures.saving import new_figure
-
         graph = self.pictured()
         if graph is None or not 1 <= as_digraph(graph).n <= _LARGEST:
             return ""
         try:
-            figure = new_figure(6.4, 3.6)
+            figure = _drawing("saving").new_figure(6.4, 3.6)
         except MissingExtra:
             return ""
         try:
@@ -151,9 +150,13 @@ class ShownOverTime(Shown):
         """
         if G is not None:
             return super().plot(G, pos=pos, ax=ax)
-        from robustness.figures.simulation import draw_outcome
+        axes: Axes = _drawing("simulation").draw_outcome(self, ax)
+        return axes
 
-        return draw_outcome(self, ax)
+
+def _drawing(technique: str) -> Any:
+    """Return a module of the drawing room."""
+    return importlib.import_module(f"robustness.figures.{technique}")
 
 
 def _as_image(figure: Any) -> str:

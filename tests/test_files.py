@@ -249,7 +249,7 @@ class TestPaths:
             write_topology(nx.path_graph(2), name)
 
     def test_endless_input_is_cut_off(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr("robustness.files.SIZE_LIMIT", 1000)
+        monkeypatch.setattr("robustness.files.front.SIZE_LIMIT", 1000)
         with pytest.raises(UnreadableTopology, match="larger than 1000 bytes"), open("/dev/zero", "rb") as endless:
             read_topology("-", endless)
 

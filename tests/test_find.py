@@ -8,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import robustness as rb
-from robustness.constructions import is_trap
 from robustness.constructions.small_graphs import each_graph
 from robustness.decision.algorithms.exhaustive import decide
 from robustness.digraph import as_digraph
@@ -28,6 +27,7 @@ from robustness.graph_search import (
 from robustness.graph_search.synthesis import small_violations
 from robustness.limits import Limits
 from robustness.results import Verdict
+from robustness.traps import is_trap
 
 WHEEL = ["2-robust", "(2,2)-robust", "min-degree>=3", "trap(1)"]
 

@@ -22,7 +22,7 @@ import robustness as rb
 from cli.main import robustness
 from robustness.files import write_topology
 from robustness.reporting import Report
-from robustness.reporting.words import headline
+from robustness.reporting.wording import headline
 
 pytest.importorskip("matplotlib")
 

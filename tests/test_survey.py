@@ -20,7 +20,7 @@ from click.testing import CliRunner, Result
 import robustness as rb
 from cli.main import robustness
 from robustness.files import write_topology
-from robustness.surveying.sources import expand
+from robustness.surveying.networks import expand
 from robustness.surveying.state import Journal
 from robustness.surveying.tables import TABLES
 

@@ -42,7 +42,6 @@ from robustness.constructions.operations import (
 )
 from robustness.constructions.random_families import erdos_renyi, growth, preferential_attachment, random_geometric
 from robustness.constructions.registry import FAMILIES, build, known_robustness
-from robustness.constructions.traps import Trap, find_trap, is_trap
 
 __all__ = [
     "FAMILIES",
@@ -52,7 +51,6 @@ __all__ = [
     "Guarantee",
     "Guaranteed",
     "KnownRobustness",
-    "Trap",
     "add_arcs",
     "add_node",
     "blow_up",
@@ -66,14 +64,12 @@ __all__ = [
     "cycle",
     "directed_circulant",
     "erdos_renyi",
-    "find_trap",
     "five_node_figure",
     "grid",
     "grow",
     "growth",
     "guaranteed",
     "hypercube",
-    "is_trap",
     "join_clique",
     "known_robustness",
     "path",

@@ -22,8 +22,8 @@ from itertools import combinations, permutations
 from typing import TYPE_CHECKING
 
 from robustness.constructions.family import require
-from robustness.constructions.traps import Trap
 from robustness.errors import InvalidParameter
+from robustness.traps import Trap
 
 if TYPE_CHECKING:
     import networkx as nx

@@ -15,11 +15,10 @@ from itertools import combinations, product
 
 import numpy as np
 
+from robustness.connectivity import smallest_separation
 from robustness.constructions.small_graphs import Batch, batch_profiles, batch_s_max
-from robustness.constructions.traps import without
 from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph
-from robustness.graph_search.connectivity import smallest_separation
 
 __all__ = ["STATEMENTS", "Statement", "profile"]
 
@@ -83,7 +82,7 @@ def _rooted_after_removals(graph: Digraph) -> str | None:
     r = _largest_r(graph)
     for size in range(r):
         for removed in combinations(range(graph.n), size):
-            if not _has_spanning_tree(without(graph, frozenset(removed))):
+            if not _has_spanning_tree(graph.without(frozenset(removed))):
                 return f"{r}-robust, but without {set(removed)} no node reaches all"
     return None
 
@@ -180,7 +179,7 @@ def _normal_part(graph: Digraph) -> str | None:
             continue
         for size in range(1, min(f, graph.n - 2) + 1):
             for removed in combinations(range(graph.n), size):
-                left = profile(without(graph, frozenset(removed)))
+                left = profile(graph.without(frozenset(removed)))
                 if left[1] < min(f + 1, graph.n - size):
                     return f"({f + 1},{f + 1})-robust, but without {set(removed)} not (1,{f + 1})-robust"
     return None

@@ -12,7 +12,7 @@ import numpy as np
 from robustness.errors import InvalidParameter, MissingExtra
 from robustness.figures.saving import new_figure
 from robustness.figures.simulation import GROUP_COLORS, Run, recorded, run_title
-from robustness.figures.words import plain
+from robustness.figures.wording import plain
 from robustness.files import replace_file
 
 __all__ = ["animate"]

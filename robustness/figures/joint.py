@@ -8,7 +8,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from robustness.figures.saving import new_figure, save_figure
-from robustness.figures.words import plain
+from robustness.figures.wording import plain
 from robustness.results import Verdict
 from robustness.time_varying import JointResult, TimeVaryingGraph, Violation
 

@@ -13,7 +13,7 @@ from typing import Any
 from certificates.graph import Label
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
-from robustness.figures.words import nodes_in_words
+from robustness.figures.wording import nodes_in_words
 
 __all__ = ["Marks", "marks_of"]
 

@@ -11,10 +11,10 @@ import numpy as np
 
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import MissingExtra
-from robustness.figures.layout import Positions, positions_for, positions_in
 from robustness.figures.marking import Marks, marks_of
+from robustness.figures.placement import Positions, positions_for, positions_in
 from robustness.figures.saving import new_figure, save_figure
-from robustness.figures.words import plain
+from robustness.figures.wording import plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

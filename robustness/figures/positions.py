@@ -16,7 +16,7 @@ from typing import Any
 import networkx as nx
 
 from robustness.digraph import Digraph
-from robustness.figures.layout import positions_in
+from robustness.figures.placement import positions_in
 from robustness.files import topohub_names
 
 __all__ = ["positions_of_file"]

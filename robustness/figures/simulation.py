@@ -10,12 +10,12 @@ import numpy as np
 
 from robustness.errors import InvalidParameter
 from robustness.figures.saving import new_figure, save_figure
-from robustness.figures.words import nodes_in_words, plain
+from robustness.figures.wording import nodes_in_words, plain
 from robustness.simulation.adversaries import Alternating
 from robustness.simulation.dynamics import Floats, to_absolute
 from robustness.simulation.outcome import Outcome, Trajectory
-from robustness.simulation.rules import rule_named
 from robustness.simulation.scenario import Scenario, Start
+from robustness.simulation.update_rules import rule_named
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -15,29 +15,12 @@ import numpy.typing as npt
 from robustness.digraph import Digraph
 from robustness.errors import InvalidGraph, UnreadableTopology
 from robustness.files.graph6 import warn_of_lost_labels
-from robustness.files.rows import Rows, is_number, rows_of
+from robustness.files.rows import Rows, is_number
 from robustness.files.text import warn_lossy
 
-__all__ = ["decode_csv", "decode_npy", "encode_csv", "encode_npy"]
+__all__ = ["decode_npy", "encode_csv", "encode_npy", "matrix_of_rows"]
 
 _TRUTH = {"true": True, "false": False}
-
-
-def decode_csv(data: bytes) -> Digraph:
-    """Return the graph of a table: a matrix, bare or with labels, or a list of links.
-
-    Separators are commas, semicolons, tabs or spaces. A table that may be a matrix and may be a list of links is
-    refused.
-    """
-    rows = rows_of(data)
-    if not rows.cells:
-        raise UnreadableTopology("an adjacency matrix has at least one row, and here is none")
-    matrix = matrix_of_rows(rows, in_text=False)
-    if matrix is not None:
-        return matrix
-    from robustness.files.edge_list import links_of
-
-    return links_of(rows)
 
 
 def matrix_of_rows(rows: Rows, *, in_text: bool) -> Digraph | None:

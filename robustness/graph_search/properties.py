@@ -25,12 +25,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
-from robustness.constructions.traps import find_trap
+from robustness.connectivity import smallest_separation
 from robustness.decision.front import check_rs_robustness
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter, Undecided
-from robustness.graph_search.connectivity import smallest_separation
 from robustness.results import Verdict
+from robustness.traps.smallest import smallest_trap
 
 __all__ = [
     "Connected",
@@ -88,7 +88,7 @@ def RRobust(r: int) -> RSRobust:
 
 @dataclass(frozen=True, slots=True)
 class HasTrap:
-    """A trap for f exists; see :mod:`robustness.constructions.traps`."""
+    """A trap for f exists; see :mod:`robustness.traps.question`."""
 
     f: int
 
@@ -97,7 +97,7 @@ class HasTrap:
 
     def holds(self, graph: Digraph, deadline: float | None = None) -> bool:
         """Decide it by removing every set of at most f nodes."""
-        return find_trap(graph, self.f, time_limit=_seconds_left(deadline)) is not None
+        return smallest_trap(graph, self.f, time_limit=_seconds_left(deadline)) is not None
 
     def __str__(self) -> str:
         return f"trap({self.f})"

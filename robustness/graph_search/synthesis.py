@@ -18,15 +18,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from robustness.constructions.traps import find_trap
+from robustness.connectivity import smallest_separation
 from robustness.decision.front import check_rs_robustness
 from robustness.digraph import Digraph
 from robustness.errors import InternalError, Undecided
 from robustness.evidence import Pair
-from robustness.graph_search.connectivity import smallest_separation
 from robustness.graph_search.model import GraphModel
 from robustness.graph_search.properties import Connected, HasTrap, Property, RSRobust
 from robustness.results import Verdict
+from robustness.traps.smallest import smallest_trap
 
 if TYPE_CHECKING:
     from ortools.sat.python import cp_model
@@ -215,7 +215,7 @@ def _members(mask: int) -> frozenset[int]:
 
 
 def _learn_trap(model: GraphModel, proposal: Digraph, f: int, deadline: float | None) -> int:
-    trap = find_trap(proposal, f, time_limit=_seconds_left(deadline))
+    trap = smallest_trap(proposal, f, time_limit=_seconds_left(deadline))
     if trap is None:
         return 0
     model.forbid_trap(Pair(proposal.ids(trap.S1), proposal.ids(trap.S2)), proposal.ids(trap.M), f)

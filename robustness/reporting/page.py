@@ -9,7 +9,7 @@ from shlex import quote
 
 from robustness.reporting.film import film_html
 from robustness.reporting.section import Section, as_data_address
-from robustness.reporting.words import headline, in_words
+from robustness.reporting.wording import headline, in_words
 from robustness.surveying import Gate, Row, Survey
 from robustness.surveying.tables import cells
 

@@ -7,11 +7,11 @@ from robustness.simulation.attacks import Attack, attack_from_trap, attack_from_
 from robustness.simulation.finding import find_attack
 from robustness.simulation.gains import PromiseWarning
 from robustness.simulation.outcome import Outcome, RunVerdict, Trajectory
-from robustness.simulation.rules import RULES
 from robustness.simulation.run import simulate
 from robustness.simulation.scenario import Scenario, Start, random_start
 from robustness.simulation.schedules import SCHEDULES, Schedule, schedule_named
 from robustness.simulation.topology import Topology, as_topology
+from robustness.simulation.update_rules import RULES
 from robustness.simulation.validate import ValidationReport, validate_certificate
 
 __all__ = [

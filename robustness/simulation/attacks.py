@@ -25,7 +25,7 @@ from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.showing import Shown
 from robustness.simulation.adversaries import Adversary, Alternating, Constant
-from robustness.simulation.models import fault_model_named, require_fault_model
+from robustness.simulation.fault_models import fault_model_named, require_fault_model
 from robustness.simulation.outcome import Outcome
 from robustness.simulation.run import simulate
 from robustness.simulation.scenario import Scenario, Start

@@ -20,16 +20,16 @@ from robustness.simulation.adversaries.protocol import Move, Setting, View
 from robustness.simulation.divergence import LARGEST_START, Divergence
 from robustness.simulation.draws import Draws
 from robustness.simulation.dynamics import Floats
+from robustness.simulation.fault_models import fault_model_named, require_fault_model
 from robustness.simulation.gains import Fleet, fleet_of
 from robustness.simulation.hearing import Hearing, Stores, stores_for
 from robustness.simulation.lawful import require_lawful
-from robustness.simulation.models import fault_model_named, require_fault_model
 from robustness.simulation.own_rule import advance_by
-from robustness.simulation.rules import rule_named
 from robustness.simulation.scenario import Scenario, Start
 from robustness.simulation.schedules import Past, Schedule
 from robustness.simulation.sensing import board_for
 from robustness.simulation.topology import Topology, extended_by
+from robustness.simulation.update_rules import rule_named
 
 __all__ = ["Batch"]
 

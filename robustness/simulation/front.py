@@ -13,10 +13,10 @@ from robustness.errors import InvalidParameter
 from robustness.simulation.adversaries import Adversary
 from robustness.simulation.arguments import integer, schedule_from
 from robustness.simulation.outcome import Outcome
-from robustness.simulation.rules import Rule, UpdateFunction
 from robustness.simulation.run import simulate as simulate_batch
 from robustness.simulation.scenario import Scenario, Start, random_start
 from robustness.simulation.schedules import Schedule
+from robustness.simulation.update_rules import Rule, UpdateFunction
 from robustness.time_varying import TimeVaryingGraph
 
 __all__ = ["most_heard", "simulate"]

@@ -16,7 +16,7 @@ from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
 from robustness.gain_region import gain_gap, hull_velocity_factor
 from robustness.simulation.dynamics import Floats
-from robustness.simulation.rules import Rule
+from robustness.simulation.update_rules import Rule
 
 __all__ = ["Fleet", "PromiseWarning", "arc_weights", "fleet_of", "kept_weight_bound", "node_gains"]
 

@@ -9,7 +9,7 @@ from robustness.errors import InvalidParameter
 from robustness.simulation.arguments import is_real
 from robustness.simulation.dynamics import Floats
 from robustness.simulation.hearing import Hearing, Stores
-from robustness.simulation.rules import UpdateFunction
+from robustness.simulation.update_rules import UpdateFunction
 
 __all__ = ["advance_by", "called"]
 

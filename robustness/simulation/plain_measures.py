@@ -19,8 +19,8 @@ from robustness.simulation.outcome import (
     settled_since,
     verdict_of,
 )
-from robustness.simulation.rules import Rule
 from robustness.simulation.scenario import Scenario, Start
+from robustness.simulation.update_rules import Rule
 
 __all__ = ["PlainRecord"]
 

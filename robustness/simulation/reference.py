@@ -19,13 +19,13 @@ import numpy as np
 from robustness.digraph import Digraph
 from robustness.simulation.adversaries.protocol import Move, Setting, View
 from robustness.simulation.draws import Draws
-from robustness.simulation.models import FAULT_MODELS
+from robustness.simulation.fault_models import FAULT_MODELS
 from robustness.simulation.outcome import Outcome
 from robustness.simulation.own_rule import called
 from robustness.simulation.plain_measures import PlainRecord
-from robustness.simulation.rules import rule_named
 from robustness.simulation.scenario import Scenario, Start
 from robustness.simulation.schedules import Past
+from robustness.simulation.update_rules import rule_named
 
 __all__ = ["kept_neighbours", "simulate_plainly"]
 

@@ -23,10 +23,10 @@ from robustness.simulation.arguments import (
 )
 from robustness.simulation.divergence import LARGEST_START
 from robustness.simulation.draws import Draws
-from robustness.simulation.models import fault_model_named
-from robustness.simulation.rules import RULES, Rule, UpdateFunction, rule_named
+from robustness.simulation.fault_models import fault_model_named
 from robustness.simulation.schedules import Schedule
 from robustness.simulation.topology import Topology, as_topology
+from robustness.simulation.update_rules import RULES, Rule, UpdateFunction, rule_named
 from robustness.time_varying import TimeVaryingGraph
 
 __all__ = ["Scenario", "Start", "random_start"]
@@ -44,7 +44,7 @@ class Scenario:
         The bound on faults that the filter and the fault model share.
     rule : str, Rule or function
         ``"w-msr"``, ``"dp-msr"``, ``"adp-msr"``, or an update rule of one's own, a function of (own value, heard
-        values): see :func:`robustness.simulation.rules.rule_named`.
+        values): see :func:`robustness.simulation.update_rules.rule_named`.
     model : str
         ``"malicious"``, ``"malicious-local"``, ``"byzantine"`` or ``"byzantine-local"``.
     adversary : Adversary or str

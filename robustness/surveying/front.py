@@ -16,8 +16,8 @@ from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter, MissingExtra, RobustnessError
 from robustness.files import read_topology
 from robustness.surveying import tables
+from robustness.surveying.networks import expand
 from robustness.surveying.row import STANDINGS, Findings, Gate, Question, Row, measure, unreadable
-from robustness.surveying.sources import expand
 from robustness.surveying.state import Journal, key_of
 from robustness.threat_models import THREAT_MODELS
 from robustness.threat_models.models import threat_model_named
@@ -115,7 +115,7 @@ def survey(
     ----------
     graphs : iterable or mapping
         Graphs as everywhere; paths, folders, patterns and ``topohub:GROUP/*`` as text, which
-        :func:`robustness.surveying.sources.expand` explains; ``(name, graph)`` pairs; or a mapping from name to graph.
+        :func:`robustness.surveying.networks.expand` explains; ``(name, graph)`` pairs; or a mapping from name to graph.
     models : iterable of str, optional
         Threat models to look at, names in ``THREAT_MODELS``; all unless given.
     gate : Gate, optional

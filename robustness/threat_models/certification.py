@@ -26,7 +26,6 @@ from math import comb
 
 from certificates import verify, verify_tolerance
 from certificates.tolerance import FORMAT
-from robustness.constructions.traps import without
 from robustness.decision.certification import certify, encode
 from robustness.digraph import Digraph
 from robustness.errors import InternalError
@@ -132,7 +131,7 @@ class _Work:
             return None
         parts = []
         for removed in combinations(range(self.graph.n), f):
-            part = self.robust(without(self.graph, frozenset(removed)), f + 1)
+            part = self.robust(self.graph.without(frozenset(removed)), f + 1)
             if part is None:
                 return None
             parts.append(part)

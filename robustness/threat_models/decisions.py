@@ -9,7 +9,7 @@ from robustness.definitions import r_reachable_ids
 from robustness.digraph import Digraph
 from robustness.limits import Limits
 from robustness.results import RobustnessResult, Verdict
-from robustness.traps.finding import decide_trap
+from robustness.traps.ladder import decide_trap
 from robustness.traps.question import Question, Sets, solves
 from robustness.traps.shortcuts import settle_trap
 
@@ -59,7 +59,7 @@ class Decisions:
         if known is None:
             settled = settle_trap(self.graph, question, self.limits.share(0.1))
             if settled is not None:
-                known = Finding(settled[0] is not None, settled[0], settled[1])
+                known = Finding(settled.exists, settled.sets, str(settled.stats["rule"]))
         if known is not None and known.exists is not None:
             self._attacks[question] = known
             return known

@@ -47,7 +47,7 @@ class ThreatModel:
     two_faces, local : bool
         The kind of attack.
     faults : str
-        The fault model of :mod:`robustness.simulation.models` that the attack obeys.
+        The fault model of :mod:`robustness.simulation.fault_models` that the attack obeys.
     """
 
     name: str

@@ -24,7 +24,7 @@ from robustness.threat_models.decisions import Decisions, Finding
 from robustness.threat_models.models import SECOND_ORDER_GAINS, THREAT_MODELS, ThreatModel
 from robustness.threat_models.remembered import Remembered, find_in_all
 from robustness.time_varying import TimeVaryingGraph
-from robustness.time_varying.checking import check_joint_within
+from robustness.time_varying.front import check_joint_within
 from robustness.traps.question import Question, Sets, solves
 
 __all__ = ["MODELS_OVER_TIME", "JointDecisions", "over_time"]

@@ -168,7 +168,7 @@ class ToleranceResult(Shown):
 
     def summary(self) -> str:
         """Return the result in plain words, claiming no more than the theorems do."""
-        from robustness.threat_models.words import summary
+        from robustness.threat_models.summaries import summary
 
         return summary(self)
 
@@ -244,13 +244,13 @@ class ToleranceTable(Shown, Mapping[str, ToleranceResult]):
 
     def summary(self) -> str:
         """Return the table in one paragraph of plain words."""
-        from robustness.threat_models.words import table_summary
+        from robustness.threat_models.summaries import table_summary
 
         return table_summary(self)
 
     def evidence(self) -> list[tuple[str, str]]:
         """Return the table, as rows of a model and what is known."""
-        from robustness.threat_models.words import number
+        from robustness.threat_models.summaries import number
 
         return [
             (result.model, f"guaranteed f = {number(result.guaranteed)}, refuted f = {number(result.refuted)}")

@@ -20,7 +20,7 @@ from robustness.digraph import GraphLike
 from robustness.errors import InternalError, InvalidParameter
 from robustness.limits import Progress
 from robustness.results import Verdict
-from robustness.time_varying.checking import check_joint_robustness
+from robustness.time_varying.front import check_joint_robustness
 from robustness.time_varying.results import JointResult
 from robustness.time_varying.sequence import TimeVaryingGraph, as_time_varying
 

@@ -6,6 +6,9 @@ tree search (:mod:`~robustness.kernels.trap_rules`, :mod:`~robustness.kernels.tr
 first (:mod:`~robustness.traps.shortcuts`), then ``search``.
 """
 
-from robustness.traps.finding import TRAP_ALGORITHMS, TrapResult, find_trap
+from robustness.traps.front import find_trap
+from robustness.traps.ladder import TRAP_ALGORITHMS
+from robustness.traps.results import TrapResult
+from robustness.traps.smallest import Trap, is_trap, smallest_trap
 
-__all__ = ["TRAP_ALGORITHMS", "TrapResult", "find_trap"]
+__all__ = ["TRAP_ALGORITHMS", "Trap", "TrapResult", "find_trap", "is_trap", "smallest_trap"]

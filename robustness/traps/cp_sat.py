@@ -18,27 +18,26 @@ is re-checked.
 from __future__ import annotations
 
 import threading
-from collections.abc import Mapping
 from typing import Any
 
 from robustness.digraph import Digraph
 from robustness.errors import InternalError
 from robustness.limits import Limits
-from robustness.traps.question import Question, Sets
+from robustness.traps.question import Question, Sets, TrapAnswer
 
 __all__ = ["decide", "solve_within"]
 
 _STEP = 0.1
 
 
-def decide(graph: Digraph, question: Question, limits: Limits) -> tuple[bool | None, Sets | None, Mapping[str, Any]]:
+def decide(graph: Digraph, question: Question, limits: Limits) -> TrapAnswer:
     """Return whether a solution exists (None past the deadline or when the solver gave up), one, and the solver's
     status.
     """
     from ortools.sat.python import cp_model
 
     if limits.expired():
-        return None, None, {"reason": "the time limit was reached"}
+        return TrapAnswer.undecided("the time limit was reached")
     model = cp_model.CpModel()
     normal, inside, malicious = _variables(model, graph, question)
     for i, degree in enumerate(graph.in_degrees.tolist()):
@@ -55,9 +54,9 @@ def decide(graph: Digraph, question: Question, limits: Limits) -> tuple[bool | N
     status, solver = solve_within(model, limits)
     stats = {"solver_status": solver.status_name(status).lower()}
     if status == cp_model.INFEASIBLE:
-        return False, None, stats
+        return TrapAnswer(False, stats=stats)
     if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-        return None, None, stats | {"reason": "the solver stopped without an answer"}
+        return TrapAnswer.undecided("the solver stopped without an answer", stats)
     bad = frozenset(i for i, each in enumerate(malicious) if solver.value(each))
     S1, S2 = (
         frozenset(
@@ -66,7 +65,7 @@ def decide(graph: Digraph, question: Question, limits: Limits) -> tuple[bool | N
         )
         for k in range(2)
     )  # fmt: skip
-    return True, Sets(bad, S1, S2), stats
+    return TrapAnswer(True, Sets(bad, S1, S2), stats=stats)
 
 
 def _variables(model: Any, graph: Digraph, question: Question) -> tuple[list[Any], list[Any], list[Any]]:

@@ -7,19 +7,19 @@ from itertools import product
 
 from robustness.digraph import Digraph
 from robustness.limits import Limits
-from robustness.traps.question import Question, Sets, solves
+from robustness.traps.question import Question, Sets, TrapAnswer, solves
 
 __all__ = ["decide"]
 
 
-def decide(graph: Digraph, question: Question, limits: Limits) -> tuple[bool | None, Sets | None]:
+def decide(graph: Digraph, question: Question, limits: Limits) -> TrapAnswer:
     """Return whether a solution exists (None past the deadline), and one: all ``4^n`` (``5^n``) roles are tried."""
     for number, sets in enumerate(_role_assignments(graph.n, question.two_faces)):
         if number % 256 == 0 and limits.expired():
-            return None, None
+            return TrapAnswer.undecided("the time limit was reached")
         if solves(graph, question, sets):
-            return True, sets
-    return False, None
+            return TrapAnswer(True, sets)
+    return TrapAnswer(False)
 
 
 def _role_assignments(n: int, two_faces: bool) -> Iterator[Sets]:

@@ -9,7 +9,7 @@ for ever, because nobody in N_k hears anything but its own value from inside, an
   there; S1 and S2 are disjoint. With ``|M| <= f`` this is exactly a violation of (f+1,f+1)-robustness:
   take ``M = X_S1 | X_S2`` (Theorem 1 of the source paper, necessity).
 * *two faces*: a malicious node shows side 1 one value and side 2 the other, by lying to each (Byzantine) or by
-  delays (see :mod:`robustness.constructions.traps`); M, S1 and S2 are disjoint. This is a *trap*.
+  delays (see :mod:`robustness.simulation.attacks`); M, S1 and S2 are disjoint. This is a *trap*.
 
 M is bounded in all (*total*: ``|M| <= f``) or around every normal node (*local*: every node outside M, also one in
 neither S1 nor S2, hears at most f nodes of M).
@@ -25,11 +25,14 @@ of them are malicious, total or local, so f + 1 are outside ``N_k | M``.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 from robustness.digraph import Digraph
+from robustness.errors import InternalError
 
-__all__ = ["Question", "Sets", "obeys_bound", "solves"]
+__all__ = ["Question", "Sets", "TrapAnswer", "obeys_bound", "solves"]
 
 
 class Question(NamedTuple):
@@ -48,6 +51,33 @@ class Sets(NamedTuple):
     M: frozenset[int]
     S1: frozenset[int]
     S2: frozenset[int]
+
+
+class TrapAnswer(NamedTuple):
+    """Whether a solution exists (None: a limit), one, what decided it, and the counters, lemma or reason."""
+
+    exists: bool | None
+    sets: Sets | None = None
+    decided_by: str = ""
+    stats: Mapping[str, Any] = MappingProxyType({})
+
+    @classmethod
+    def by_lemma(cls, sets: Sets | None, rule: str) -> TrapAnswer:
+        """Return a solution, or with None that there is none, as a lemma tells it."""
+        return cls(sets is not None, sets, "lemma", {"rule": rule})
+
+    @classmethod
+    def undecided(
+        cls, reason: str, stats: Mapping[str, Any] = MappingProxyType({}), decided_by: str = ""
+    ) -> TrapAnswer:
+        """Return that nothing is claimed, with its reason among the stats."""
+        return cls(None, None, decided_by, {**stats, "reason": reason})
+
+    def rechecked(self, graph: Digraph, question: Question) -> TrapAnswer:
+        """Return the answer after its sets were checked against the definition; wrong ones are an InternalError."""
+        if self.exists and (self.sets is None or not solves(graph, question, self.sets)):
+            raise InternalError(f"{self.decided_by} returned {self.sets}, no solution of {question}: please report")
+        return self
 
 
 def obeys_bound(graph: Digraph, M: frozenset[int], f: int, *, local: bool) -> bool:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +11,7 @@ from robustness.digraph import Digraph
 from robustness.errors import InternalError
 from robustness.kernels.layout import CLOSED, FOUND, GROW, NODES, PAUSED, PROBES, TRAP_P, TRAP_Q, TRAP_ROWS
 from robustness.limits import Limits, Progress
-from robustness.traps.question import Question, Sets
+from robustness.traps.question import Question, Sets, TrapAnswer
 
 __all__ = ["decide"]
 
@@ -23,7 +21,7 @@ _LEVELS = 64
 
 def decide(
     graph: Digraph, question: Question, limits: Limits, *, counting: bool = True, look_ahead: bool = True
-) -> tuple[bool | None, Sets | None, Mapping[str, Any]]:
+) -> TrapAnswer:
     """Return whether a solution exists (None past the deadline), one, and counters.
 
     Exponential in the worst case. ``counting`` and ``look_ahead`` are switches for what they are named after; the
@@ -39,11 +37,11 @@ def decide(
             run.advance()
             stats = {"nodes": sum(each.nodes for each in runs), "probes": sum(each.probes for each in runs)}
             if run.is_closed:
-                return False, None, stats
+                return TrapAnswer(False, stats=stats)
             if run.solution is not None:
-                return True, run.solution, stats
+                return TrapAnswer(True, run.solution, stats=stats)
             if limits.expired():
-                return None, None, stats | {"reason": "the time limit was reached"}
+                return TrapAnswer.undecided("the time limit was reached", stats)
         if limits.progress is not None and time.monotonic() - told > 0.2:
             told = time.monotonic()
             limits.progress(Progress(stats["nodes"], f"traps for f = {question.f}"))

@@ -10,9 +10,10 @@ import pytest
 from click.testing import CliRunner, Result
 
 from cli.main import robustness
-from robustness.constructions import FAMILIES, build, is_trap
+from robustness.constructions import FAMILIES, build
 from robustness.digraph import as_digraph
 from robustness.files import decode_topology, read_topology
+from robustness.traps import is_trap
 
 
 def run(*arguments: str, stdin: str | None = None) -> Result:

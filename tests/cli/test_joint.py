@@ -16,7 +16,7 @@ from cli.main import robustness
 from robustness.definitions import is_violation
 from robustness.files import write_topology
 from robustness.results import RobustnessResult
-from robustness.time_varying import JointResult, TimeVaryingGraph, deciding, encode_sequence, read_sequence
+from robustness.time_varying import JointResult, TimeVaryingGraph, encode_sequence, read_sequence, unions
 
 #: Node k is heard by all others at step k; 2-robust over every 3 steps, 3-robust over every 5.
 STAR = TimeVaryingGraph.from_arcs(range(5), [[(k, v) for v in range(5) if v != k] for k in range(5)], period=5)
@@ -238,7 +238,7 @@ def test_an_interrupt_is_130(monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("robustness.time_varying.deciding.check_within", interrupted)
+    monkeypatch.setattr("robustness.time_varying.unions.check_within", interrupted)
     outcome = joint("-r", "2")
     assert (outcome.exit_code, outcome.stdout) == (130, "")
 
@@ -256,14 +256,14 @@ def test_a_compiler_that_does_not_stop_is_undecided(monkeypatch: pytest.MonkeyPa
 
 
 def test_an_undecided_union_keeps_what_is_proven(monkeypatch: pytest.MonkeyPatch) -> None:
-    front = deciding.check_within
+    front = unions.check_within
 
     def stubborn(graph: rb.Digraph, r: int, s: int, *options: object) -> RobustnessResult:
         if graph.arc_count == 12:
             return RobustnessResult(rb.Verdict.UNDECIDED, r, s, stats={"reason": "too hard"})
         return front(graph, r, s, *options)
 
-    monkeypatch.setattr(deciding, "check_within", stubborn)
+    monkeypatch.setattr(unions, "check_within", stubborn)
     outcome = joint("-r", "2")
     assert outcome.exit_code == 30
     assert "is not known (too hard); fewer than 3 steps will not do" in outcome.stdout

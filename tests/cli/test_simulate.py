@@ -19,8 +19,8 @@ from robustness.files import encode_topology
 from robustness.paper.experiments import EXPERIMENTS
 from robustness.simulation import ADVERSARIES, RULES, SCHEDULES
 from robustness.simulation.claim import Claim
+from robustness.simulation.fault_models import FAULT_MODELS
 from robustness.simulation.finding import ATTACK_MODELS
-from robustness.simulation.models import FAULT_MODELS
 from robustness.threat_models import THREAT_MODELS
 
 WHEEL, CYCLE, COMPLETE = (

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 import robustness as rb
-from robustness.constructions import five_node_figure, is_trap, two_f_robust_counterexample
+from robustness.constructions import five_node_figure, two_f_robust_counterexample
 from robustness.constructions.small_graphs import batch_profiles
 from robustness.digraph import as_digraph
 from robustness.graph_search import find_graph
+from robustness.traps import is_trap
 
 
 def profile_of(G):

@@ -17,9 +17,9 @@ import robustness as rb
 from cli.main import robustness
 from robustness.digraph import as_digraph
 from robustness.errors import InvalidParameter
-from robustness.figures.layout import positions_in
 from robustness.figures.marking import marks_of
 from robustness.figures.network import draw_to_file
+from robustness.figures.placement import positions_in
 from robustness.figures.positions import positions_of_file
 from robustness.simulation import find_attack
 from robustness.traps import find_trap

@@ -34,7 +34,7 @@ from robustness.simulation.adversaries import (
     Sine,
     View,
 )
-from robustness.simulation.models import FAULT_MODELS
+from robustness.simulation.fault_models import FAULT_MODELS
 from robustness.simulation.motion import Creep, InAbsolutePositions
 from robustness.simulation.schedules import AdversarialDelays, EveryStep
 

@@ -16,7 +16,6 @@ from hypothesis import strategies as st
 import robustness as rb
 from robustness.constructions.counterexamples import FIVE_NODE_READINGS, five_node_figure, two_f_robust_counterexample
 from robustness.constructions.small_graphs import each_graph
-from robustness.constructions.traps import is_trap
 from robustness.definitions import is_violation
 from robustness.digraph import Digraph, as_digraph
 from robustness.errors import InvalidParameter
@@ -33,7 +32,7 @@ from robustness.simulation import (
 from robustness.simulation.finding import ATTACK_MODELS
 from robustness.simulation.schedules import AdversarialDelays, AdversarialUpdates, RandomDelays, RandomUpdates, Schedule
 from robustness.threat_models import THREAT_MODELS
-from robustness.traps import TrapResult, exhaustive
+from robustness.traps import TrapResult, exhaustive, is_trap
 
 LIGHT_SCHEDULES = [
     Schedule(RandomUpdates(0.4, 3), RandomDelays(2)),

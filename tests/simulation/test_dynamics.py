@@ -14,7 +14,7 @@ from robustness.simulation import PromiseWarning, Scenario, Start, Topology, sim
 from robustness.simulation.dynamics import double_integrator, to_absolute, to_transformed
 from robustness.simulation.formation import node_offsets, offsets_from_deltas
 from robustness.simulation.gains import arc_weights, fleet_of, kept_weight_bound, node_gains
-from robustness.simulation.rules import DP_MSR, W_MSR
+from robustness.simulation.update_rules import DP_MSR, W_MSR
 
 SMALL = st.floats(-100, 100)
 

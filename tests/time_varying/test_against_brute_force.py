@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import robustness as rb
 from robustness.time_varying import JointResult, TimeVaryingGraph, check_joint_robustness, joint_curve
-from robustness.time_varying.deciding import RULES
+from robustness.time_varying.unions import RULES
 from tests.time_varying.brute_force import (
     Arc,
     Step,

@@ -12,7 +12,7 @@ import pytest
 import robustness as rb
 from robustness.limits import Progress
 from robustness.results import RobustnessResult
-from robustness.time_varying import JointResult, TimeVaryingGraph, check_joint_robustness, deciding, joint_curve
+from robustness.time_varying import JointResult, TimeVaryingGraph, check_joint_robustness, joint_curve, unions
 
 
 def rotating_star(n: int = 5, period: int | None = None) -> TimeVaryingGraph:
@@ -114,14 +114,14 @@ Front = Callable[..., RobustnessResult]
 
 def undecided_when(condition: Callable[[rb.Digraph], bool], monkeypatch: pytest.MonkeyPatch) -> None:
     """Make the search give up on the graphs that meet a condition."""
-    front: Front = deciding.check_within
+    front: Front = unions.check_within
 
     def stubborn(graph: rb.Digraph, r: int, s: int, *options: Any) -> RobustnessResult:
         if condition(graph):
             return RobustnessResult(rb.Verdict.UNDECIDED, r, s, stats={"reason": "too hard"})
         return front(graph, r, s, *options)
 
-    monkeypatch.setattr(deciding, "check_within", stubborn)
+    monkeypatch.setattr(unions, "check_within", stubborn)
 
 
 def test_an_undecided_union_leaves_what_is_proven(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -150,7 +150,7 @@ def test_a_violation_after_an_undecided_window_still_refutes(monkeypatch: pytest
 
 def test_a_wrong_pair_is_an_internal_error(monkeypatch: pytest.MonkeyPatch) -> None:
     lie = RobustnessResult(rb.Verdict.NOT_ROBUST, 2, 1, rb.Witness(frozenset({0}), frozenset({1})))
-    monkeypatch.setattr(deciding, "check_within", lambda *_, **__: lie)
+    monkeypatch.setattr(unions, "check_within", lambda *_, **__: lie)
     with pytest.raises(rb.InternalError, match="violates nothing at step 0"):
         check_joint_robustness([nx.complete_graph(4)], 2, window=1)
 
@@ -187,7 +187,7 @@ def test_the_algorithm_is_the_one_asked_for(algorithm: str) -> None:
 
 
 def test_progress_is_told_now_and_then(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robustness.time_varying.checking._PROGRESS_SECONDS", 0.0)
+    monkeypatch.setattr("robustness.time_varying.front._PROGRESS_SECONDS", 0.0)
     told: list[Progress] = []
     check_joint_robustness(rotating_star(), 2, progress=told.append)
     assert told[-1].nodes > told[0].nodes

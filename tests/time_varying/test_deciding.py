@@ -12,9 +12,9 @@ import robustness as rb
 from robustness.decision.algorithms.exhaustive import decide as exhaustive
 from robustness.limits import Limits
 from robustness.time_varying import TimeVaryingGraph, UnionVerdict, check_joint_robustness
-from robustness.time_varying.deciding import RULES, UnionDecider
 from robustness.time_varying.growth import Arcs, Seed, find_seed, grow
 from robustness.time_varying.sequence import SlidingUnion
+from robustness.time_varying.unions import RULES, UnionDecider
 
 
 def on_off(graph: nx.Graph, steps: int, off: float, on: float, seed: int) -> TimeVaryingGraph:

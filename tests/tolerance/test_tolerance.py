@@ -14,6 +14,7 @@ from robustness.threat_models import THREAT_MODELS, Standing, tolerance
 from robustness.threat_models.confirmation import confirm
 from robustness.threat_models.decisions import Decisions, certain_attack
 from robustness.threat_models.verdicts import judge
+from robustness.traps.question import TrapAnswer
 from tests.oracles import digraphs, graphs
 from tests.tolerance.brute_force import expected, has_standing_attack, has_trap
 
@@ -147,7 +148,8 @@ class TestLimits:
         undecided = rb.RobustnessResult(rb.Verdict.UNDECIDED, 1, 1)
         monkeypatch.setattr("robustness.threat_models.decisions.check_within", lambda *_, **__: undecided)
         monkeypatch.setattr("robustness.threat_models.decisions.settle_trap", lambda *_: None)
-        monkeypatch.setattr("robustness.threat_models.decisions.decide_trap", lambda *_: (None, None, "search", {}))
+        stopped = TrapAnswer.undecided("stopped")
+        monkeypatch.setattr("robustness.threat_models.decisions.decide_trap", lambda *_: stopped)
         decisions = Decisions(rb.Digraph.from_networkx(nx.complete_graph(4)), Limits())
         for threat in THREAT_MODELS.values():
             result = judge(decisions, threat)

@@ -19,8 +19,8 @@ from robustness.constructions import two_f_robust_counterexample
 from robustness.errors import InternalError, InvalidParameter, Undecided
 from robustness.limits import Limits, Progress
 from robustness.traps import TRAP_ALGORITHMS, find_trap
-from robustness.traps.finding import decide_trap
-from robustness.traps.question import Question, Sets, obeys_bound, solves
+from robustness.traps.ladder import decide_trap
+from robustness.traps.question import Question, Sets, TrapAnswer, obeys_bound, solves
 from robustness.traps.shortcuts import settle_trap
 from tests.oracles import digraphs, graphs
 from tests.tolerance.brute_force import has_standing_attack, has_trap
@@ -114,9 +114,9 @@ class TestShortcuts:
                 settled = settle_trap(graph, question, Limits())
                 if settled is None:
                     continue
-                rules.add(settled[1].split(",")[0])
-                assert (settled[0] is not None) == exists(graph, f, faces, local), (graph.in_masks, f)
-                assert settled[0] is None or solves(graph, question, settled[0])
+                rules.add(settled.stats["rule"].split(",")[0])
+                assert settled.exists == exists(graph, f, faces, local), (graph.in_masks, f)
+                assert settled.sets is None or solves(graph, question, settled.sets)
         assert {"n <= 3f", "a node of in-degree at most 2f"} <= rules or faces == 1
         assert {"n <= 2f"} <= rules or faces == 2
         assert any(rule.startswith("in-degrees of at least") for rule in rules)
@@ -131,7 +131,7 @@ class TestShortcuts:
 
     def test_robustness_settles_larger_graphs(self) -> None:
         ring = rb.Digraph.from_networkx(nx.circulant_graph(30, (1, 2, 3)))
-        assert settle_trap(ring, Question(1), Limits()) == (None, "3-robust, so no trap for f = 1")
+        assert settle_trap(ring, Question(1), Limits()) == TrapAnswer.by_lemma(None, "3-robust, so no trap for f = 1")
         assert find_trap(ring, 1, algorithm="search").exists is False
 
     def test_complete_graphs_need_no_search(self) -> None:
@@ -261,7 +261,7 @@ class TestMisuse:
             bool(find_trap(self.graph, 1))
 
     def test_a_wrong_solution_is_an_internal_error(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        wrong = (True, Sets(frozenset(), frozenset({0}), frozenset({1})), {})
+        wrong = TrapAnswer(True, Sets(frozenset(), frozenset({0}), frozenset({1})))
         monkeypatch.setattr("robustness.traps.cp_sat.decide", lambda *_: wrong)
         with pytest.raises(InternalError, match="please report"):
             find_trap(nx.complete_graph(5), 1, algorithm="cp-sat")

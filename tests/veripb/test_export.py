@@ -19,7 +19,7 @@ from certificates.graph import decode_graph
 from robustness.constructions import blow_up, certify_derivation, guaranteed
 from robustness.decision.certification import certify, encode
 from robustness.decision.veripb import export
-from robustness.decision.veripb.model import Model
+from robustness.decision.veripb.inequalities import Model
 from robustness.errors import InvalidParameter
 from tests.certificates.forging import certificate as forged
 from tests.certificates.forging import claims, wander

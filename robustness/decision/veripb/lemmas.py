@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from robustness.decision.veripb.model import Model, negated
+from robustness.decision.veripb.inequalities import Model, negated
 from robustness.decision.veripb.proof import Proof
 
 __all__ = ["derive_degree", "derive_growth"]

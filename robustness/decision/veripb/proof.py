@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from robustness.decision.veripb.model import Model, inequality, negated
+from robustness.decision.veripb.inequalities import Model, inequality, negated
 
 __all__ = ["SYNTAXES", "Proof", "Syntax"]
 

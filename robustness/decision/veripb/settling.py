@@ -1,7 +1,7 @@
 """Settling a state as the kernel does, and writing down what unit propagation would not see by itself.
 
 For s = 1 that is nothing. For s > 1 the bounds on exempt nodes have to be brought together with the needs of nodes;
-see :mod:`~robustness.decision.veripb.derivation`. The settled state does not depend on the order of the rules, so the
+see :mod:`~robustness.decision.veripb.transcript`. The settled state does not depend on the order of the rules, so the
 states here are those of the kernel, and branches close where they close there.
 """
 
@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from certificates.rules import Contradiction
-from robustness.decision.veripb.model import Model, negated
+from robustness.decision.veripb.inequalities import Model, negated
 from robustness.decision.veripb.proof import Proof
 
 __all__ = ["Knowledge", "Settling", "ids"]

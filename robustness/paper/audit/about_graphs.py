@@ -6,7 +6,6 @@ from itertools import combinations
 
 from robustness.constructions.families import complete
 from robustness.constructions.lemma_1 import profile
-from robustness.constructions.traps import is_trap, without
 from robustness.decision.front import check_rs_robustness
 from robustness.definitions import r_reachable_ids
 from robustness.digraph import Digraph, as_digraph
@@ -22,6 +21,7 @@ from robustness.paper.audit.claims import (
     small_graphs,
     trapped,
 )
+from robustness.traps import is_trap
 
 __all__ = ["CLAIMS"]
 
@@ -106,7 +106,7 @@ def _rooted_without_liars(graph: Digraph) -> str | None:
     for f in range(1, len(table) - 1):
         for size in range(f + 1) if table[f + 1] >= f + 1 else ():
             for bad in combinations(range(graph.n), size):
-                if graph.n - size >= 2 and not robust(without(graph, frozenset(bad)), 1):
+                if graph.n - size >= 2 and not robust(graph.without(frozenset(bad)), 1):
                     return f"({f + 1},{f + 1})-robust, but without {set(bad)} no node reaches all"
     return None
 

@@ -7,12 +7,12 @@ from itertools import combinations
 
 import networkx as nx
 
+from robustness.connectivity import smallest_separation
 from robustness.constructions.counterexamples import FIVE_NODE_READINGS, five_node_figure
 from robustness.constructions.lemma_1 import profile
 from robustness.constructions.random_families import erdos_renyi
 from robustness.decision.front import check_rs_robustness, determine_robustness
 from robustness.digraph import Digraph, as_digraph
-from robustness.graph_search.connectivity import smallest_separation
 from robustness.paper.audit.claims import (
     GRAPHS,
     Claim,

@@ -8,7 +8,6 @@ import networkx as nx
 
 from robustness.constructions.counterexamples import two_f_robust_counterexample
 from robustness.constructions.families import complete
-from robustness.constructions.traps import is_trap
 from robustness.decision.front import check_rs_robustness
 from robustness.digraph import Digraph, as_digraph
 from robustness.paper.audit.claims import Claim, Outcome, holding, robust, trapped
@@ -19,7 +18,7 @@ from robustness.simulation.scenario import Scenario
 from robustness.simulation.schedules import Schedule
 from robustness.simulation.topology import Topology
 from robustness.threat_models.results import AttackSets
-from robustness.traps import find_trap
+from robustness.traps import find_trap, is_trap
 
 __all__ = ["CLAIMS"]
 

@@ -21,7 +21,7 @@ import numpy.typing as npt
 from robustness.digraph import Digraph
 from robustness.simulation.draws import Draws
 from robustness.simulation.dynamics import Floats
-from robustness.simulation.models import FaultModel
+from robustness.simulation.fault_models import FaultModel
 
 __all__ = ["Adversary", "Mask", "Move", "Setting", "View"]
 

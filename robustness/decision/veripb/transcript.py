@@ -1,6 +1,6 @@
 """From the transcript of a refutation to the lines of a proof.
 
-What becomes of each rule (docs/certificate-format.md has the rules, :mod:`~robustness.decision.veripb.model` the
+What becomes of each rule (docs/certificate-format.md has the rules, :mod:`~robustness.decision.veripb.inequalities` the
 inequalities):
 
 *member*, *spent*
@@ -28,7 +28,7 @@ from __future__ import annotations
 
 from certificates.refutation import BRANCH, EXCLUDE, PROPAGATE, ROOT, SATISFIED
 from certificates.rules import Contradiction
-from robustness.decision.veripb.model import Model
+from robustness.decision.veripb.inequalities import Model
 from robustness.decision.veripb.proof import Proof
 from robustness.decision.veripb.settling import Knowledge, Settling, ids
 

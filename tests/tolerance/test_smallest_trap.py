@@ -7,9 +7,9 @@ from itertools import product
 import networkx as nx
 import pytest
 
-from robustness.constructions import find_trap, is_trap
 from robustness.constructions.small_graphs import each_graph
 from robustness.errors import InvalidGraph, InvalidParameter, Undecided
+from robustness.traps import is_trap, smallest_trap
 
 
 def traps_by_definition(graph, f):
@@ -24,7 +24,7 @@ def traps_by_definition(graph, f):
 @pytest.mark.parametrize("f", [0, 1, 2])
 def test_found_exactly_where_the_definition_has_one(directed, largest, f):
     for graph in each_graph(largest, directed=directed):
-        found = find_trap(graph, f)
+        found = smallest_trap(graph, f)
         exists = next(traps_by_definition(graph, f), None) is not None
         assert (found is not None) == exists, graph.in_masks
         if found is not None:
@@ -45,7 +45,7 @@ def test_every_clause_of_the_definition_counts():
 
 
 def test_a_smallest_malicious_set_is_found_first():
-    trap = find_trap(nx.path_graph(4), 1)
+    trap = smallest_trap(nx.path_graph(4), 1)
     assert trap is not None
     assert trap.M == frozenset()
     assert set(trap.as_dict()) == {"M", "S1", "S2"}
@@ -57,4 +57,4 @@ def test_misuse():
     with pytest.raises(InvalidGraph):
         is_trap(nx.path_graph(3), 1, [], [0], [7])
     with pytest.raises(Undecided):
-        find_trap(nx.random_regular_graph(20, 60, seed=1), 8, time_limit=1e-3)
+        smallest_trap(nx.random_regular_graph(20, 60, seed=1), 8, time_limit=1e-3)

@@ -29,9 +29,9 @@ from robustness.digraph import GraphLike
 from robustness.errors import InternalError, InvalidParameter
 from robustness.limits import Limits, Progress
 from robustness.results import Verdict
-from robustness.time_varying.deciding import RULES, TIME_IS_UP, UnionDecider
 from robustness.time_varying.results import JointResult, Unions, UnionVerdict, Violation
 from robustness.time_varying.sequence import SlidingUnion, TimeVaryingGraph, as_time_varying
+from robustness.time_varying.unions import RULES, TIME_IS_UP, UnionDecider
 
 __all__ = ["check_joint_robustness", "joint_curve"]
 
@@ -96,7 +96,7 @@ def check_joint_robustness(
     Notes
     -----
     At most ``steps + l`` unions are decided to find the smallest l, ``steps`` for a given one; most of them without a
-    search (:mod:`robustness.time_varying.deciding`). Deciding one union is coNP-complete in general.
+    search (:mod:`robustness.time_varying.unions`). Deciding one union is coNP-complete in general.
 
     References
     ----------
