@@ -196,7 +196,7 @@ class TestLimits:
 
         with pytest.raises(StopIteration):
             find_trap(nx.random_regular_graph(8, 60, seed=1), 2, algorithm="search", progress=note)
-        assert all(each.nodes >= 0 and "f = 3" in each.note for each in told)
+        assert all(each.nodes >= 0 and "f = 2" in each.note for each in told)
 
     @pytest.mark.parametrize("algorithm", ["search", "cp-sat"])
     def test_ctrl_c(self, algorithm: str) -> None:
