@@ -25,6 +25,7 @@ FACES: Mapping[str, tuple[int, str]] = MappingProxyType(
         "malicious": (1, "total"),
         "malicious-local": (1, "local"),
         "byzantine": (2, "total"),
+        "byzantine-local": (2, "local"),
         "delayed": (2, "total"),
         "delayed-local": (2, "local"),
     }

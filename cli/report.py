@@ -37,14 +37,16 @@ def command(
 
     PATH is as for survey. The page is one file that loads nothing: the verdict in words, the networks as rows to sort,
     and for each its picture with the weakest pair, what it survives, the attack that splits it, to play, and how to
-    verify its certificate. The exit code is that of survey: of the worst network.
+    verify its certificate. The verdict is printed as well, and the exit code is that of survey: of the worst network.
     """
     from robustness.files.writing import require_different_files
     from robustness.reporting.front import report_of, require_drawing
+    from robustness.reporting.wording import headline
 
     require_drawing(not no_pictures)
     require_different_files(networks.paths, [output])
     kept: list[Findings] = []
     found, is_interrupted = run_survey(console, networks, on_findings=kept.append)
     report_of(found, tuple(kept), title=title, gate=networks.gate, pictures=not no_pictures).write(output)
+    console.result(headline(found, networks.gate))
     ctx.exit(exit_code(console, found, is_interrupted, [f"wrote {output} ({len(found)} networks)"]))

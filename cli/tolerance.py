@@ -44,7 +44,7 @@ class Report:
         if self.required is None:
             return None
         standings = {result.standing(self.required).value for result in self.table.results}
-        return next(each for each in ("refuted", "undecided", "open", "guaranteed") if each in standings)
+        return next(each for each in ("refuted", "undecided", "guaranteed") if each in standings)
 
     def exit_code(self) -> ExitCode:
         """Return 0, 10 or 30: with --require about that f, else about whether a limit left something undecided."""
@@ -107,14 +107,13 @@ def command(
     """What does GRAPH survive? For each threat model the largest f guaranteed and the smallest refuted.
 
     \b
-    malicious        updates in step, at most f liars in all, who tell everybody the same
-    malicious-local  the same, up to f liars around every vehicle
-    byzantine        the same as malicious, but each neighbour may be told another lie
-    delayed          delays and partly asynchronous updates, at most f liars in all
-    delayed-local    the same, up to f liars around every vehicle
+    malicious   updates in step, at most f liars in all, who tell everybody the same
+    byzantine   the same, but each neighbour may be told another lie
+    delayed     delays and partly asynchronous updates, at most f liars in all
+    ...-local   each of them with up to f liars around every node
 
-    What lies between guaranteed and refuted is open in theory, and said to be. Every attack is carried out by the
-    simulator first. With --require F: exit code 0 when F is guaranteed (under every model shown), 10 when an
+    Every f is guaranteed or refuted, unless a limit came first: the conditions are exact. Every attack is carried
+    out by the simulator first. With --require F: exit code 0 when F is guaranteed (under every model shown), 10 when an
     attack refutes it, 30 when neither is known. Without: 0, or 30 when a limit left something undecided.
 
     With -o, DIR/graph.json is the canonical graph, DIR/MODEL-guaranteed-F.cert and DIR/MODEL-refuted-F.cert are
@@ -182,7 +181,7 @@ def _examine(
 ) -> Report:
     from robustness.errors import InternalError
     from robustness.threat_models import tolerance
-    from robustness.threat_models.confirming import confirm
+    from robustness.threat_models.confirmation import confirm
     from robustness.threat_models.results import ToleranceTable
 
     started = time.perf_counter()
@@ -283,18 +282,17 @@ def _gate(report: Report) -> str:
     what = {
         "guaranteed": "agreement is guaranteed",
         "refuted": "an attack splits the network",
-        "open": "the theorem promises nothing and no attack of the kind exists: open in theory",
         "undecided": "a limit was reached",
     }[verdict]
     return f"{click.style(verdict + ':', fg=color, bold=True)} f = {report.required} under {models}: {what}"
 
 
 def _table(table: ToleranceTable) -> Iterator[str]:
-    from robustness.threat_models.wording import number
+    from robustness.threat_models.summaries import number
 
     yield f"{'model':<17}{'guaranteed':>10}{'refuted':>9}  between"
     for result in table.results:
-        between = ", ".join(f"{f} {result.standing(f).value}" for f in result.between) or "-"
+        between = f"{', '.join(map(str, result.between))} undecided" if result.between else "-"
         if result.refuted is None and result.graph.n >= 2:
             between = "undecided"
         yield f"{result.model:<17}{number(result.guaranteed):>10}{number(result.refuted):>9}  {between}"

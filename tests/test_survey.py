@@ -202,7 +202,7 @@ class TestTables:
         found = self.rows()
         read = list(csv.DictReader(io.StringIO(TABLES["csv"](found.rows, found.models))))
         assert [row["network"] for row in read] == [self.EVIL, "plain"]
-        assert read[1]["delayed guaranteed"] == "1"
+        assert read[1]["delayed guaranteed"] == "2"
         lines = [json.loads(line) for line in TABLES["jsonl"](found.rows, found.models).splitlines()]
         assert [line["network"] for line in lines] == [self.EVIL, "plain"]
         assert {line["schema"] for line in lines} == {"robustness/survey-row/1"}

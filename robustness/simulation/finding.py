@@ -26,13 +26,14 @@ __all__ = ["ATTACK_MODELS", "Finding", "find_attack"]
 
 #: What the attacker may do, by the names of :mod:`robustness.threat_models`: lie to all alike, to each neighbour
 #: differently, or to all alike with delays; and whether the bound is in all or around every normal node.
-ATTACK_MODELS = ("malicious", "malicious-local", "byzantine", "delayed", "delayed-local")
+ATTACK_MODELS = ("malicious", "malicious-local", "byzantine", "byzantine-local", "delayed", "delayed-local")
 
 #: For every model but the first: how many faces a liar has, whether the bound is local, and the fault model.
 _KINDS: Mapping[str, tuple[int, bool, str]] = MappingProxyType(
     {
         "malicious-local": (1, True, "malicious-local"),
         "byzantine": (2, False, "byzantine"),
+        "byzantine-local": (2, True, "byzantine-local"),
         "delayed": (2, False, "malicious"),
         "delayed-local": (2, True, "malicious-local"),
     }
@@ -87,9 +88,9 @@ def find_attack(
     f : int
         At least 0.
     model : str
-        ``"malicious"``: synchronous, f-total; decided by (f+1,f+1)-robustness. ``"byzantine"``: synchronous, f-total;
-        ``"delayed"``: with delays, f-total; ``"delayed-local"``: with at most f malicious in-neighbours of every normal
-        node; decided by traps. ``"malicious-local"``: synchronous, decided by local violations.
+        ``"malicious"``: synchronous, f-total; decided by (f+1,f+1)-robustness. ``"malicious-local"``: with at most f
+        malicious in-neighbours of every normal node; decided by local violations. ``"byzantine"``: synchronous,
+        f-total; ``"delayed"``: with delays, f-total; both also with ``"-local"``; decided by traps.
     algorithm, time_limit, jobs, seed, progress
         As for :func:`robustness.check_rs_robustness`; the time limit is for everything together, and the algorithm is
         used for checks of robustness (traps have one of their own).
@@ -159,10 +160,9 @@ def _find_by_search(graph: Digraph, f: int, model: str, deadline: float, options
     # (2f+1)-robust graphs have no attack of these kinds, which spares the search; that check gets half of the time.
     left = _left(deadline)
     half = None if left is None else left / 2
-    if model != "byzantine":
-        strong = check_rs_robustness(graph, 2 * f + 1, time_limit=half, **options)
-        if strong.verdict is Verdict.ROBUST:
-            return Finding(None, "agreement", f"{2 * f + 1}-robust: f = {f} nodes do not split it, two-faced or not")
+    strong = check_rs_robustness(graph, 2 * f + 1, time_limit=half, **options)
+    if strong.verdict is Verdict.ROBUST:
+        return Finding(None, "agreement", f"{2 * f + 1}-robust: f = {f} nodes do not split it, two-faced or not")
     del options["algorithm"]
     found = find_trap(graph, f, faces=faces, local=local, time_limit=_left(deadline), **options)
     if found.exists is None:

@@ -219,10 +219,11 @@ def _run(
                 key, row = future.result()
                 rows[waiting.pop(future)] = row
                 finished += 1
-                if key is not None:
-                    journal.add(key, row)
+                # In this order: whoever finds a row in the journal can rely on its having been told.
                 if on_row is not None:
                     on_row(row, finished, len(networks))
+                if key is not None:
+                    journal.add(key, row)
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
 

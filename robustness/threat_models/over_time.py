@@ -1,34 +1,31 @@
-"""Tolerance of a time-varying network, under delays.
+"""Tolerance of a time-varying network, under delays: Theorem C of docs/theorems.md.
 
-Promised: agreement against f, when the sequence is jointly (2f+1)-robust over every l steps with
-``(l - 1) + (g - 1) + b <= tau``. Here b bounds the delays, g is the longest gap between two updates of a vehicle, and a
-link that has gone is remembered: a value that left its sender at most tau steps ago is still used.
+With memory tau (a value that left its sender at most tau steps ago is still used, also when its link has gone), delays
+of at most b, and updates at most g steps apart:
 
-Why the three add up. A vehicle that updates at step k used some step of the last g. What it has of a link was sent
-while the link was there, up to l - 1 steps before, and arrived up to b steps late. Only when the oldest of these values
-is still remembered does the vehicle hear, whenever it updates, a union of l steps. The source paper's last corollary
-asks for ``l <= tau`` alone and is false: K_5, whose even steps lack the links 03, 12 and whose odd steps lack 02, 13,
-is jointly 3-robust over 2 steps, and with tau = 2 and all delays 2 one liar splits it for ever, exactly
-(tests/tolerance).
+* *Guaranteed*: f, when the sequence is jointly (2f+1)-robust over every l steps with
+  ``(l - 1) + (g - 1) + b <= tau``. (The source paper's last corollary asks for ``l <= tau`` alone and is false.)
+* *Refuted*: f with a trap in the *union* of all steps, since nobody hears anybody whom it does not hear there.
+* *Exactly*, for sequences that repeat: f is refuted if and only if one triple holds everything remembered apart
+  (:mod:`robustness.threat_models.remembered`).
 
-Refuted: f with a trap in the *union* of all steps. A vehicle hears at any step, also through links that have gone, only
-in-neighbours of the union. So a node of S_k still hears at most f values other than its own from outside, and discards
-them; with ``b >= 1`` delays show either side its own face of every malicious node, as in a fixed network.
-
-A finite trace promises and forbids nothing beyond its last step.
+The first two are tried first. A finite trace promises and forbids nothing beyond its last step: taken to go on as it
+was, what the first two leave between them stays undecided.
 """
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, field, replace
 
 from robustness.errors import InvalidParameter
-from robustness.results import RobustnessResult, Verdict
-from robustness.threat_models.deciding import Decisions
+from robustness.limits import Limits
+from robustness.results import Verdict
+from robustness.threat_models.decisions import Decisions, Finding
 from robustness.threat_models.models import SECOND_ORDER_GAINS, THREAT_MODELS, ThreatModel
+from robustness.threat_models.remembered import Remembered, find_in_all
 from robustness.time_varying import TimeVaryingGraph
 from robustness.time_varying.front import check_joint_within
+from robustness.traps.question import Question, Sets, solves
 
 __all__ = ["MODELS_OVER_TIME", "JointDecisions", "over_time"]
 
@@ -46,37 +43,64 @@ def over_time(name: str) -> ThreatModel:
     return replace(
         threat,
         setting=f"{threat.setting}; links come and go",
-        theorem="the source paper, corollary on time-varying networks, corrected: jointly (2f+1)-robust with "
-        f"(l - 1) + (g - 1) + b <= tau, {SECOND_ORDER_GAINS}",
-        counter_theorem=f"{threat.counter_theorem}; no vehicle ever hears anybody it does not hear in the union",
+        theorem=f"docs/theorems.md, Theorem C, for first-order vehicles and for {SECOND_ORDER_GAINS}",
+        counter_theorem=f"{threat.counter_theorem}, and Theorem C: nobody hears more than what is remembered",
     )
 
 
 @dataclass(slots=True)
 class JointDecisions(Decisions):
-    """What has been decided about one sequence: ``graph`` is the union of its steps, promises are about windows."""
+    """What has been decided about one sequence: ``graph`` is the union of its steps."""
 
     sequence: TimeVaryingGraph = field(kw_only=True)
     tau: int = field(kw_only=True)
     #: The bound b on delays and the longest gap g between updates.
     delay: int = field(kw_only=True)
     gap: int = field(kw_only=True)
-    _joint: dict[int, RobustnessResult] = field(default_factory=dict)
+    _joint: dict[int, Verdict] = field(default_factory=dict)
     _windows: dict[int, int] = field(default_factory=dict)
+    _union: Decisions | None = None
+    _remembered: Remembered | None = None
 
-    def twice_robust(self, f: int, share: float = 1.0) -> RobustnessResult:
-        """Return whether the sequence is jointly (2f+1)-robust with ``(l - 1) + (g - 1) + b <= tau``."""
-        if f not in self._joint:
-            self._joint[f] = self._decide(2 * f + 1, share)
-        return self._joint[f]
+    @property
+    def union(self) -> Decisions:
+        """What is decided about the union of all steps, as a fixed network."""
+        if self._union is None:
+            self._union = Decisions(self.graph, self.limits)
+        return self._union
 
-    def strength(self, f: int, *, holds: bool) -> str:
-        """Return in words over how many steps the sequence is jointly robust, or that it is not within tau."""
-        r = 2 * f + 1
-        if not holds:
-            return f"the network is not jointly {r}-robust over any number of steps that {self._room}"
+    @property
+    def remembered(self) -> Remembered:
+        """The links in use at every step."""
+        if self._remembered is None:
+            self._remembered = Remembered.of(self.sequence, self.tau, self.delay, self.gap)
+        return self._remembered
+
+    def quick_attack(self, question: Question) -> Finding | None:
+        """Return what lemmas about the union tell, which can only be an attack, or None."""
+        known = self._attacks.get(question)
+        if known is None or known.exists is None:
+            known = self.union.quick_attack(question)
+            if known is None or not known.exists:
+                return None
+            self._attacks[question] = known
+        return known
+
+    def attack(self, question: Question, share: float = 1.0) -> Finding:
+        """Return whether an attack of this kind exists."""
+        known = self._attacks.get(question)
+        if known is None or known.exists is None:
+            known = self._attacks[question] = self._from_others(question) or self._decide(question, share)
+        return known
+
+    def statement(self, f: int, question: Question) -> str:
+        """Return in words what is known about the sequence when there is no attack of this kind on f."""
         trace = "" if self.sequence.period else " (a finite trace: nothing is said beyond its last step)"
-        return f"the network is jointly {r}-robust over every {self._windows[r]} steps; windows {self._room}{trace}"
+        window = self._windows.get(2 * f + 1)
+        if window is not None:
+            return f"the network is jointly {2 * f + 1}-robust over every {window} steps; windows {self._room}{trace}"
+        local = "f-local " if question.local else ""
+        return f"no {local}triple M, S1, S2 for f = {f} holds what is remembered apart at every step ({self._ages})"
 
     @property
     def longest_window(self) -> int:
@@ -84,31 +108,59 @@ class JointDecisions(Decisions):
         return self.tau - self.delay - self.gap + 2
 
     @property
-    def _room(self) -> str:
-        """Why windows may be so long and no longer."""
-        return (
-            f"may have up to {max(self.longest_window, 0)} steps (tau = {self.tau}, delays up to {self.delay}, "
-            f"updates up to {self.gap} steps apart)"
-        )
-
-    @property
     def scene(self) -> str:
         """Where traps are looked for."""
-        return "in the union of all steps, "
+        return "in what is remembered at any step, "
 
-    def _decide(self, r: int, share: float) -> RobustnessResult:
-        started = time.monotonic()
-        longest = self.longest_window
+    def _decide(self, question: Question, share: float) -> Finding:
+        limits = self.limits.share(share)
+        twice = self._jointly(question.f, limits.share(0.3))
+        if twice is Verdict.ROBUST:
+            return Finding(False, None, f"unions of {self._windows[2 * question.f + 1]} steps")
+        self.union.limits = limits.share(0.4)
+        found = self.union.attack(question)
+        if found.exists:
+            return found
+        if self.sequence.period is None:
+            if found.exists is None or twice is Verdict.UNDECIDED:
+                return Finding(None, None, "the time limit was reached")
+            return Finding(None, None, "a finite trace does not say what comes after it")
+        exists, sets, how = find_in_all(self.remembered, question, limits)
+        return Finding(exists, sets, how)
+
+    def _from_others(self, question: Question) -> Finding | None:
+        """No attack for a greater f, or a looser bound, means none here; an attack on a smaller f is one here."""
+        for other, found in self._attacks.items():
+            if found.exists is False and other.f >= question.f and other.local >= question.local:
+                return Finding(False, None, found.how)
+            if found.exists and other.f <= question.f and other.local <= question.local:
+                sets = found.sets or Sets(frozenset(), frozenset(), frozenset())
+                if solves(self.graph, question, sets):
+                    return Finding(True, sets, found.how)
+        return None
+
+    @property
+    def _ages(self) -> str:
+        return f"tau = {self.tau}, delays up to {self.delay}, updates up to {self.gap} steps apart"
+
+    @property
+    def _room(self) -> str:
+        """Why windows may be so long and no longer."""
+        return f"may have up to {max(self.longest_window, 0)} steps ({self._ages})"
+
+    def _jointly(self, f: int, limits: Limits) -> Verdict:
+        """Return whether the sequence is jointly (2f+1)-robust with ``(l - 1) + (g - 1) + b <= tau``."""
+        r, longest = 2 * f + 1, self.longest_window
         if longest < 1:
-            return RobustnessResult(Verdict.NOT_ROBUST, r, 1, algorithm="no window is short enough")
-        found = check_joint_within(self.sequence, r, 1, tau=longest, limits=self.limits.share(share))
-        verdict = found.verdict
-        if found.within_tau is not None:
-            verdict = Verdict.ROBUST if found.within_tau else Verdict.NOT_ROBUST
-        elif found.verdict is Verdict.UNDECIDED and found.at_least > longest:
-            verdict = Verdict.NOT_ROBUST
-        if verdict is Verdict.ROBUST and found.window is not None:
-            self._windows[r] = found.window
-        return RobustnessResult(
-            verdict, r, 1, algorithm="unions of windows", stats=found.stats, seconds=time.monotonic() - started
-        )
+            return Verdict.NOT_ROBUST
+        if r not in self._joint:
+            found = check_joint_within(self.sequence, r, 1, tau=longest, limits=limits)
+            verdict = found.verdict
+            if found.within_tau is not None:
+                verdict = Verdict.ROBUST if found.within_tau else Verdict.NOT_ROBUST
+            elif found.verdict is Verdict.UNDECIDED and found.at_least > longest:
+                verdict = Verdict.NOT_ROBUST
+            if verdict is Verdict.ROBUST and found.window is not None:
+                self._windows[r] = found.window
+            self._joint[r] = verdict
+        return self._joint[r]

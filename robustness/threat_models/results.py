@@ -27,8 +27,6 @@ class Standing(enum.Enum):
     GUARANTEED = "guaranteed"
     #: A re-checked attack splits the network for ever.
     REFUTED = "refuted"
-    #: Everything was decided: the promise does not apply, and no attack of the kind exists. Theory leaves it open.
-    OPEN = "open"
     #: A limit stopped the search.
     UNDECIDED = "undecided"
 
@@ -37,7 +35,8 @@ class Standing(enum.Enum):
 class AttackSets:
     """The sets that hold a network apart: see :mod:`robustness.traps.question`.
 
-    ``faces`` 1: M is a subset of S1 and S2 (a violation). ``faces`` 2: M is outside both (a trap).
+    ``faces`` 1: M is a subset of S1 and S2 (a violation). ``faces`` 2: M is outside both (a trap). ``remembered``: of a
+    network that changes, they hold apart what is remembered at every step, but not the union of all steps.
     """
 
     f: int
@@ -46,6 +45,7 @@ class AttackSets:
     M: frozenset[Label]
     S1: frozenset[Label]
     S2: frozenset[Label]
+    remembered: bool = False
 
     @property
     def kind(self) -> str:
@@ -91,16 +91,14 @@ class ToleranceResult(Shown):
     reasons : tuple of Reason
     attack_sets : AttackSets or None
         The attack on ``refuted``, re-checked against its definition.
-    no_attack : int
-        The largest f for which it is decided that no attack of the model's kind exists; -1 when for none.
-    no_promise : int or None
-        The smallest f for which it is decided that the promise does not apply.
     sequence : TimeVaryingGraph or None
         The sequence whose windows the promise is about; ``graph`` is then the union of its steps.
     tau : int or None
         With a sequence: for how many steps after it was sent a value is used.
+    delay, gap : int or None
+        With a sequence: the bound on delays, and how far updates may lie apart.
     longest_window : int or None
-        With a sequence: how many steps the windows of a promise may have.
+        With a sequence: how many steps the windows may have whose joint robustness promises.
     """
 
     graph: Digraph = field(repr=False)
@@ -109,10 +107,10 @@ class ToleranceResult(Shown):
     refuted: int | None
     reasons: tuple[Reason, ...] = field(repr=False)
     attack_sets: AttackSets | None = None
-    no_attack: int = -1
-    no_promise: int | None = None
     sequence: TimeVaryingGraph | None = field(default=None, repr=False, compare=False)
     tau: int | None = None
+    delay: int | None = None
+    gap: int | None = None
     longest_window: int | None = None
 
     def __bool__(self) -> bool:
@@ -142,35 +140,35 @@ class ToleranceResult(Shown):
             return Standing.GUARANTEED
         if self.refuted is not None and f >= self.refuted:
             return Standing.REFUTED
-        if self.no_promise is not None and self.no_promise <= f <= self.no_attack:
-            return Standing.OPEN
         return Standing.UNDECIDED
 
     @property
     def between(self) -> tuple[int, ...]:
-        """The f that are neither guaranteed nor refuted, up to the smallest refuted one."""
+        """The f that a limit left undecided, up to the smallest refuted one."""
         return tuple(range(self.guaranteed + 1, self.refuted)) if self.refuted is not None else ()
 
     @property
     def is_decided(self) -> bool:
-        """Whether no limit is to blame for any f that is neither guaranteed nor refuted."""
-        if self.graph.n < 2:
-            return True
-        return self.refuted is not None and all(self.standing(f) is Standing.OPEN for f in self.between)
+        """Whether every f is guaranteed or refuted."""
+        return self.graph.n < 2 or (self.refuted is not None and not self.between)
 
     @property
     def attack(self) -> Attack | None:
-        """The attack on ``refuted`` for the simulator; ``attack.run().exact`` is True."""
-        if self.attack_sets is None:
+        """The attack on ``refuted`` for the simulator; ``attack.run().exact`` is True.
+
+        None when none is known, and for sets that hold apart only what is remembered: those need the delays and update
+        times of :func:`robustness.threat_models.confirm`.
+        """
+        if self.attack_sets is None or self.attack_sets.remembered:
             return None
         from robustness.simulation.attacks import Attack
 
-        sets, delayed = self.attack_sets, self.threat.faults != "byzantine" and self.threat.two_faces
+        sets, delayed = self.attack_sets, self.threat.delayed
         return Attack(sets.kind, self.graph, sets.f, self.threat.faults, sets.M, sets.S1, sets.S2, delayed=delayed)
 
     def summary(self) -> str:
         """Return the result in plain words, claiming no more than the theorems do."""
-        from robustness.threat_models.wording import summary
+        from robustness.threat_models.summaries import summary
 
         return summary(self)
 
@@ -181,8 +179,7 @@ class ToleranceResult(Shown):
             "setting": self.threat.setting,
             "guaranteed": self.guaranteed,
             "refuted": self.refuted,
-            "open": [f for f in self.between if self.standing(f) is Standing.OPEN],
-            "undecided": [f for f in self.between if self.standing(f) is Standing.UNDECIDED],
+            "undecided": list(self.between),
             "is_decided": self.is_decided,
             "summary": self.summary(),
             "reasons": [
@@ -247,13 +244,13 @@ class ToleranceTable(Shown, Mapping[str, ToleranceResult]):
 
     def summary(self) -> str:
         """Return the table in one paragraph of plain words."""
-        from robustness.threat_models.wording import table_summary
+        from robustness.threat_models.summaries import table_summary
 
         return table_summary(self)
 
     def evidence(self) -> list[tuple[str, str]]:
         """Return the table, as rows of a model and what is known."""
-        from robustness.threat_models.wording import number
+        from robustness.threat_models.summaries import number
 
         return [
             (result.model, f"guaranteed f = {number(result.guaranteed)}, refuted f = {number(result.refuted)}")

@@ -21,10 +21,11 @@ import threading
 from typing import Any
 
 from robustness.digraph import Digraph
+from robustness.errors import InternalError
 from robustness.limits import Limits
 from robustness.traps.question import Question, Sets, TrapAnswer
 
-__all__ = ["decide"]
+__all__ = ["decide", "solve_within"]
 
 _STEP = 0.1
 
@@ -50,8 +51,7 @@ def decide(graph: Digraph, question: Question, limits: Limits) -> TrapAnswer:
         model.add(sum(malicious) <= question.f)
     for k in range(2):
         model.add_bool_or([sides[k] for sides in normal])
-    solver = cp_model.CpSolver()
-    status = _solve(solver, model, limits)
+    status, solver = solve_within(model, limits)
     stats = {"solver_status": solver.status_name(status).lower()}
     if status == cp_model.INFEASIBLE:
         return TrapAnswer(False, stats=stats)
@@ -84,15 +84,28 @@ def _variables(model: Any, graph: Digraph, question: Question) -> tuple[list[Any
     return normal, inside, malicious
 
 
-def _solve(solver: Any, model: Any, limits: Limits) -> Any:
-    """Run CP-SAT in a thread that the caller waits for in short steps, so that Ctrl-C is served and stops it."""
+def solve_within(model: Any, limits: Limits) -> tuple[Any, Any]:
+    """Return the status and the solver. It runs in a thread that the caller waits for in short steps, so that Ctrl-C
+    is served and stops it. An exception of that thread is raised here; a status after a stopped call is never used.
+    """
+    from ortools.sat.python import cp_model
+
+    solver = cp_model.CpSolver()
     solver.parameters.num_workers = limits.jobs
     solver.parameters.random_seed = limits.seed % (1 << 31)
     solver.parameters.catch_sigint_signal = False
     if limits.deadline is not None:
-        solver.parameters.max_time_in_seconds = limits.seconds_left()
+        solver.parameters.max_time_in_seconds = max(limits.seconds_left(), 1e-3)
     outcome: list[Any] = []
-    worker = threading.Thread(target=lambda: outcome.append(solver.solve(model)), daemon=True)
+    problems: list[BaseException] = []
+
+    def work() -> None:
+        try:
+            outcome.append(solver.solve(model))
+        except BaseException as problem:  # noqa: BLE001 - handed to the caller, which raises it
+            problems.append(problem)
+
+    worker = threading.Thread(target=work, daemon=True)
     worker.start()
     try:
         while worker.is_alive():
@@ -101,4 +114,6 @@ def _solve(solver: Any, model: Any, limits: Limits) -> Any:
         solver.stop_search()
         worker.join()
         raise
-    return outcome[0]
+    if problems:
+        raise InternalError(f"the solver failed: {problems[0]}: please report") from problems[0]
+    return outcome[0], solver

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cache
 
-from robustness import Digraph
+from robustness import Digraph, TimeVaryingGraph
 from tests.oracles import brute_profile
 
 
@@ -72,13 +72,41 @@ def expected(graph: Digraph) -> dict[str, tuple[int, int]]:
     def s_max(r: int) -> int:
         return profile.get(r, 0)
 
-    promised = first(lambda f: s_max(2 * f + 1) < 1) - 1
-    violated = first(lambda f: s_max(f + 1) < f + 1)
     trapped = first(lambda f: has_trap(masks, f, False))
-    return {
-        "malicious": (violated - 1, violated),
-        "malicious-local": (promised, first(lambda f: has_standing_attack(masks, f, True))),
-        "byzantine": (trapped - 1, trapped),
-        "delayed": (promised, trapped),
-        "delayed-local": (promised, first(lambda f: has_trap(masks, f, True))),
+    around = first(lambda f: has_trap(masks, f, True))
+    refuted = {
+        "malicious": first(lambda f: s_max(f + 1) < f + 1),
+        "malicious-local": first(lambda f: has_standing_attack(masks, f, True)),
+        "byzantine": trapped,
+        "byzantine-local": around,
+        "delayed": trapped,
+        "delayed-local": around,
     }
+    return {model: (f - 1, f) for model, f in refuted.items()}
+
+
+def has_trap_over_time(sequence: TimeVaryingGraph, ages: tuple[int, int, int], f: int, local: bool) -> bool:
+    """Return whether of some triple nobody is ever active at g consecutive steps, for ages (tau, b, g): Theorem C (b).
+
+    For sequences that repeat from their first step on.
+    """
+    tau, delay, gap = ages
+    period = len(sequence)
+    union = sequence.union(0, period).in_masks
+    used = [sequence.union(k, tau - delay + 1).in_masks for k in range(period)]
+    everybody = (1 << sequence.n) - 1
+
+    def is_held(S: int, M: int) -> bool:
+        for i in range(sequence.n):
+            if S >> i & 1:
+                active = [(masks[i] & ~S & ~M).bit_count() > f for masks in used]
+                if any(all(active[(k + m) % period] for m in range(gap)) for k in range(period)):
+                    return False
+        return True
+
+    for M in subsets(everybody):
+        if obeys(union, M, f, local):
+            held = [S for S in subsets(everybody & ~M) if S and is_held(S, M)]
+            if any(not S1 & S2 for S1 in held for S2 in held):
+                return True
+    return False

@@ -22,10 +22,10 @@ from robustness.simulation.adversaries import Alternating
 from robustness.simulation.adversaries.protocol import View
 from robustness.simulation.run import simulate
 from robustness.simulation.schedules import EveryStep, Past
-from robustness.threat_models import Standing, certify_tolerance, tolerance
+from robustness.threat_models import Standing, certify_tolerance, confirm, tolerance
 from robustness.time_varying import TimeVaryingGraph, canonical_sequence
 from tests.oracles import brute_profile
-from tests.tolerance.brute_force import has_trap
+from tests.tolerance.brute_force import has_trap, has_trap_over_time
 
 
 def spread(graph: nx.Graph, steps: int, period: int | None) -> TimeVaryingGraph:
@@ -66,25 +66,48 @@ def promised(sequence: TimeVaryingGraph, tau: int) -> int:
 
 @pytest.mark.parametrize("part", range(2))
 def test_as_defined(part: int) -> None:
-    for sequence, tau in drawn(24)[part::2]:
-        union = sequence.union(0, len(sequence))
-        table = tolerance(sequence, tau=tau, delay=1)
+    """Periodic sequences exactly, by Theorem C (b) tried out; of a finite trace the two conditions that hold anyway."""
+    for k, (sequence, tau) in enumerate(drawn(36)[part::2]):
+        ages = (tau, *((1, 1), (min(2, tau), 1), (1, 2))[k % 3])
+        table = tolerance(sequence, tau=tau, delay=ages[1], gap=ages[2])
         assert list(table) == ["delayed", "delayed-local"]
+        union = sequence.union(0, len(sequence))
         for result in table.results:
-            trapped = next(f for f in range(10) if has_trap(union.in_masks, f, result.threat.local))
-            assert (result.guaranteed, result.refuted) == (promised(sequence, tau), trapped)
+            local = result.threat.local
             assert result.over_time
-            assert all(result.standing(f) is Standing.OPEN for f in result.between)
+            if sequence.period is None:
+                trapped = next(f for f in range(10) if has_trap(union.in_masks, f, local))
+                longest = result.longest_window or 0
+                assert (result.guaranteed, result.refuted) == (promised(sequence, longest), trapped)
+                assert all(result.standing(f) is Standing.UNDECIDED for f in result.between)
+            else:
+                split = next(f for f in range(10) if has_trap_over_time(sequence, ages, f, local))
+                assert (result.guaranteed, result.refuted) == (split - 1, split), (ages, local)
+                assert confirm(result) is (None if result.attack is None and sum(ages[1:]) - 1 > tau else True)
+
+
+def test_before_a_period_nothing_is_claimed_that_its_steps_contradict() -> None:
+    """A prefix in which all hear all: what holds the period apart does not hold the prefix apart, so f is undecided."""
+    steps = [nx.complete_graph(5), *(halves_of_k5().graph_at(k).to_networkx() for k in range(2))]
+    result = tolerance(TimeVaryingGraph(steps, period=2), "delayed", tau=2)
+    assert (result.guaranteed, result.standing(1)) == (0, Standing.UNDECIDED)
+    steps[0] = nx.empty_graph(5)
+    result = tolerance(TimeVaryingGraph(steps, period=2), "delayed", tau=2)
+    assert (result.guaranteed, result.refuted, confirm(result)) == (0, 1, True)
 
 
 def test_the_attack_splits_the_sequence_itself() -> None:
+    seen = 0
     for sequence, tau in drawn(8):
         for result in tolerance(sequence, tau=tau, delay=1).results:
             attack = result.attack
-            assert attack is not None
+            if attack is None:
+                continue
+            seen += 1
             if sequence.period is None:
                 sequence = TimeVaryingGraph([sequence.graph_at(k) for k in range(len(sequence))], period=len(sequence))
             assert attack.run(30, network=as_topology(sequence, 30)).exact
+    assert seen > 4
 
 
 def halves_of_k5() -> TimeVaryingGraph:
@@ -103,8 +126,11 @@ def test_the_corollary_as_printed_is_false_and_nothing_is_promised_by_it() -> No
     assert rb.check_joint_robustness(sequence, 3, tau=2).within_tau
     for model in ("delayed", "delayed-local"):
         result = tolerance(sequence, model, tau=2)
-        assert result.guaranteed < 1
-        assert result.standing(1) is not Standing.GUARANTEED
+        assert (result.guaranteed, result.refuted, confirm(result)) == (0, 1, True)
+        assert result.attack_sets is not None
+        assert result.attack_sets.remembered
+        assert result.attack is None
+        assert certify_tolerance(result).refuted is None
         # Delays of at most 1 leave room for windows of two steps.
         assert tolerance(sequence, model, tau=2, delay=1).guaranteed == 1
 
@@ -146,15 +172,19 @@ def test_how_long_windows_may_be(tau: int, delay: int | None, gap: int | None, l
     sequence = spread(nx.complete_graph(8), 4, 4)
     result = tolerance(sequence, "delayed", tau=tau, delay=delay, gap=gap)
     assert result.longest_window == longest
-    assert result.guaranteed == (promised(sequence, longest) if longest >= 1 else -1)
+    assert result.guaranteed >= (promised(sequence, longest) if longest >= 1 else -1)
 
 
 def test_more_tau_promises_more() -> None:
     sequence = spread(nx.complete_graph(8), 4, 4)
-    assert [tolerance(sequence, "delayed", tau=tau, delay=1).guaranteed for tau in (1, 2, 3, 4)] == [-1, 0, 1, 1]
+    found = [tolerance(sequence, "delayed", tau=tau, delay=1).guaranteed for tau in (1, 2, 3, 4)]
+    assert found == sorted(found)
+    assert found[-1] == tolerance(nx.complete_graph(8), "delayed").guaranteed
     (first, *_) = tolerance(sequence, "delayed", tau=3, delay=1).reasons
-    assert "jointly 3-robust over every 3 steps; windows may have up to 3 steps (tau = 3" in first.statement
-    assert "corollary on time-varying networks" in first.theorem
+    assert "no triple M, S1, S2 for f = 2 holds what is remembered apart at every step (tau = 3" in first.statement
+    (first, *_) = tolerance(spread(nx.complete_graph(6), 2, 2), "delayed", tau=2, delay=1).reasons
+    assert "jointly 3-robust over every 2 steps; windows may have up to 2 steps (tau = 2" in first.statement
+    assert "Theorem C" in first.theorem
 
 
 def test_a_finite_trace_says_that_it_ends() -> None:
@@ -253,6 +283,7 @@ class TestCommand:
 def test_an_undecided_window_promises_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     undecided = rb.JointResult(rb.Verdict.UNDECIDED, 1, 1, reason="the time limit was reached")
     monkeypatch.setattr("robustness.threat_models.over_time.check_joint_within", lambda *_, **__: undecided)
+    monkeypatch.setattr("robustness.threat_models.over_time.find_in_all", lambda *_: (None, None, "a limit"))
     result = tolerance(spread(nx.complete_graph(5), 2, 2), "delayed", tau=2, delay=1)
     assert result.guaranteed == -1
     assert result.standing(0) is Standing.UNDECIDED

@@ -11,9 +11,9 @@ import robustness as rb
 from robustness.errors import InvalidGraph, InvalidParameter
 from robustness.limits import Limits
 from robustness.threat_models import THREAT_MODELS, Standing, tolerance
-from robustness.threat_models.confirming import confirm
-from robustness.threat_models.deciding import Decisions, certain_attack
-from robustness.threat_models.judging import judge
+from robustness.threat_models.confirmation import confirm
+from robustness.threat_models.decisions import Decisions, certain_attack
+from robustness.threat_models.verdicts import judge
 from robustness.traps.question import TrapAnswer
 from tests.oracles import digraphs, graphs
 from tests.tolerance.brute_force import expected, has_standing_attack, has_trap
@@ -42,9 +42,8 @@ def assert_as_defined(graph: rb.Digraph) -> None:
     assert {model: (r.guaranteed, r.refuted) for model, r in table.items()} == expected(graph), graph.in_masks
     assert table.is_decided
     for result in table.results:
-        for f in result.between:
-            assert result.standing(f) is Standing.OPEN
-        assert {f for r in result.reasons for f in [r.f] if r.standing is Standing.OPEN} == set(result.between)
+        assert result.between == ()
+        assert [reason.standing for reason in result.reasons][-1] is Standing.REFUTED
 
 
 @pytest.mark.parametrize("part", range(4))
@@ -97,8 +96,13 @@ class TestTheTwoConditionsUnderDelays:
     def test_the_wheel_is_2_2_robust_and_trapped(self) -> None:
         table = tolerance(nx.wheel_graph(5))
         assert table.guaranteed == {
-            "malicious": 1, "malicious-local": 0, "byzantine": 0, "delayed": 0, "delayed-local": 0,
-        }  # fmt: skip
+            "malicious": 1,
+            "malicious-local": 1,
+            "byzantine": 0,
+            "byzantine-local": 0,
+            "delayed": 0,
+            "delayed-local": 0,
+        }
         assert table["delayed"].attack_sets is not None
         assert table["delayed"].attack_sets.kind == "trap"
 
@@ -134,7 +138,6 @@ class TestLimits:
         for result in tolerance(graph, time_limit=1e-6).results:
             for f in range(6):
                 standing = result.standing(f)
-                assert standing is not Standing.OPEN or result.no_attack >= f
                 if result.model == "malicious" and standing in (Standing.GUARANTEED, Standing.REFUTED):
                     assert whole.standing(f) is standing
             if not result.is_decided:
@@ -143,9 +146,10 @@ class TestLimits:
 
     def test_nothing_decided_promises_nothing(self, monkeypatch: pytest.MonkeyPatch) -> None:
         undecided = rb.RobustnessResult(rb.Verdict.UNDECIDED, 1, 1)
-        monkeypatch.setattr("robustness.threat_models.deciding.check_within", lambda *_, **__: undecided)
-        monkeypatch.setattr("robustness.threat_models.deciding.settle_trap", lambda *_: None)
-        monkeypatch.setattr("robustness.threat_models.deciding.decide_trap", lambda *_: TrapAnswer.undecided("stopped"))
+        monkeypatch.setattr("robustness.threat_models.decisions.check_within", lambda *_, **__: undecided)
+        monkeypatch.setattr("robustness.threat_models.decisions.settle_trap", lambda *_: None)
+        stopped = TrapAnswer.undecided("stopped")
+        monkeypatch.setattr("robustness.threat_models.decisions.decide_trap", lambda *_: stopped)
         decisions = Decisions(rb.Digraph.from_networkx(nx.complete_graph(4)), Limits())
         for threat in THREAT_MODELS.values():
             result = judge(decisions, threat)
@@ -199,19 +203,19 @@ class TestWording:
         for graph in SMALL[::5]:
             for result in tolerance(graph).results:
                 text = result.summary()
-                assert ("open" in text) == any(result.standing(f) is Standing.OPEN for f in result.between)
                 if result.guaranteed > 0:
                     assert f"guaranteed for f = {result.guaranteed}" in text
                 if result.guaranteed < 0:
                     assert "guaranteed" not in text
                 assert (f"f = {result.refuted}" if result.refuted else "even though nobody lies") in text
 
-    def test_open_claims_nothing_either_way(self) -> None:
-        result = tolerance(nx.complete_graph(8), "delayed")
-        (reason,) = [reason for reason in result.reasons if reason.standing is Standing.OPEN]
-        assert (result.guaranteed, result.refuted, reason.f) == (1, 3, 2)
-        assert "open" in reason.theorem
-        assert "promises nothing here" in reason.theorem
+    def test_between_the_two_conditions_of_the_literature_the_network_agrees(self) -> None:
+        """K_8 is 4-robust only, so f = 2 is out of reach of (2f+1)-robustness; K_4 with f = 1 likewise."""
+        for n, f in ((8, 2), (4, 1)):
+            for model in ("delayed", "delayed-local", "byzantine", "byzantine-local"):
+                result = tolerance(nx.complete_graph(n), model)
+                assert (result.guaranteed, result.refuted) == (f, f + 1), model
+            assert "there is no local trap" in tolerance(nx.complete_graph(n), "delayed-local").reasons[0].statement
 
     def test_notebook(self) -> None:
         table = tolerance(nx.wheel_graph(5))
@@ -221,7 +225,7 @@ class TestWording:
     def test_table_is_a_mapping(self) -> None:
         table = tolerance(nx.wheel_graph(5))
         assert list(table) == list(THREAT_MODELS)
-        assert len(table) == 5
+        assert len(table) == 6
         with pytest.raises(KeyError):
             table["friendly"]
         assert set(table.reasons) == set(THREAT_MODELS)

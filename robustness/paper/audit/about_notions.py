@@ -206,7 +206,8 @@ def _five_nodes() -> Outcome:
         if not check_rs_robustness(graph, 2, 2).decided() or check_rs_robustness(graph, 3).decided():
             return Outcome("fails", "the definition", f"reading {reading}", as_digraph(graph))
     trap = five_node_figure().graph["trap"]
-    sets = AttackSets(1, 2, False, *(frozenset(trap[name]) for name in ("M", "S1", "S2")))
+    M, S1, S2 = (frozenset(trap[name]) for name in ("M", "S1", "S2"))
+    sets = AttackSets(1, 2, False, M, S1, S2)
     note = f"the arcs are not in the text; it holds for the readings {', '.join(FIVE_NODE_READINGS)}"
     return Outcome("holds", "the definition", note, as_digraph(five_node_figure()), sets)
 

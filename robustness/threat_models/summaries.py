@@ -6,20 +6,11 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from robustness.threat_models.models import THREAT_MODELS
-from robustness.threat_models.results import Standing
 
 if TYPE_CHECKING:
     from robustness.threat_models.results import ToleranceResult, ToleranceTable
 
 __all__ = ["number", "summary", "table_summary"]
-
-_WHERE = {
-    "malicious": "in step, without delays, against liars who tell everybody the same",
-    "malicious-local": "in step, without delays, with up to f such liars around every vehicle",
-    "byzantine": "in step, without delays, against liars who tell each neighbour another story",
-    "delayed": "with delays and partly asynchronous updates",
-    "delayed-local": "with delays and up to f liars around every vehicle",
-}
 
 
 def number(f: int | None) -> str:
@@ -29,7 +20,7 @@ def number(f: int | None) -> str:
 
 def summary(result: ToleranceResult) -> str:
     """Return one model's result in a sentence, and what it rests on."""
-    where = _WHERE[result.model]
+    where = result.threat.where
     told = f"{where[0].upper()}{where[1:]}: {_outcome(result)}."
     return " ".join([told, *_scope([result] if result.graph.n >= 2 else [])])
 
@@ -37,24 +28,23 @@ def summary(result: ToleranceResult) -> str:
 def _outcome(result: ToleranceResult) -> str:
     """Return what is known under one model, without saying which."""
     if result.graph.n < 2:
-        return "fewer than two vehicles cannot disagree"
+        return "fewer than two nodes cannot disagree"
     parts = [_promised(result), _refuted(result)]
-    for standing in (Standing.OPEN, Standing.UNDECIDED):
-        which = [f for f in result.between if result.standing(f) is standing]
-        if which:
-            parts.append(_between(which, standing, result))
+    if result.between:
+        values = ", ".join(map(str, result.between))
+        parts.append(f"f = {values} {'was' if len(result.between) == 1 else 'were'} not decided within the limit")
     return "; ".join(part for part in parts if part)
 
 
 def table_summary(table: ToleranceTable) -> str:
     """Return the whole table as one paragraph; models with one and the same outcome share a sentence."""
     graph = table.graph
-    size = f"A network of {graph.n} {'vehicle' if graph.n == 1 else 'vehicles'} and {graph.arc_count} arcs. "
+    size = f"A network of {graph.n} {'node' if graph.n == 1 else 'nodes'} and {graph.arc_count} arcs. "
     if graph.n < 2:
-        return size + "Fewer than two vehicles cannot disagree, whatever the threat."
+        return size + "Fewer than two nodes cannot disagree, whatever the threat."
     sentences: dict[str, list[str]] = {}
     for result in table.results:
-        sentences.setdefault(_outcome(result), []).append(_WHERE[result.model])
+        sentences.setdefault(_outcome(result), []).append(result.threat.where)
     told = [f"{'; and '.join(where)}: {outcome}." for outcome, where in sentences.items()]
     if len(sentences) == 1 and len(table) == len(THREAT_MODELS):
         told = [f"under every threat model: {next(iter(sentences))}."]
@@ -90,11 +80,3 @@ def _refuted(result: ToleranceResult) -> str:
     if not sets.M:
         return f"for f = {f} it stays split for ever without a single liar, since everybody discards too much"
     return f"for f = {f} an attack by {len(sets.M)} {'liar' if len(sets.M) == 1 else 'liars'} keeps it split for ever"
-
-
-def _between(which: Sequence[int], standing: Standing, result: ToleranceResult) -> str:
-    values = ", ".join(map(str, which))
-    if standing is Standing.UNDECIDED:
-        return f"f = {values} {'was' if len(which) == 1 else 'were'} not decided within the limit"
-    kind = "trap" if result.threat.two_faces else "attack by vehicles that stand still"
-    return f"f = {values} {'is' if len(which) == 1 else 'are'} open: the theorem promises nothing, and no {kind} exists"

@@ -9,11 +9,11 @@ from typing import Any, overload
 from robustness.digraph import GraphLike, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.limits import Limits, Progress
-from robustness.threat_models.deciding import Decisions
-from robustness.threat_models.judging import judge
+from robustness.threat_models.decisions import Decisions
 from robustness.threat_models.models import THREAT_MODELS, threat_model_named
 from robustness.threat_models.over_time import MODELS_OVER_TIME, JointDecisions, over_time
 from robustness.threat_models.results import ToleranceResult, ToleranceTable
+from robustness.threat_models.verdicts import judge
 from robustness.time_varying import TimeVaryingGraph
 
 __all__ = ["tolerance"]
@@ -64,7 +64,10 @@ def tolerance(
     progress: Callable[[Progress], None] | None = None,
     on_result: Callable[[ToleranceResult], None] | None = None,
 ) -> ToleranceResult | ToleranceTable:
-    """Return the largest f that a threat model promises to survive, and the smallest f with an attack.
+    """Return the largest f that a network survives under a threat model, and the smallest f with an attack.
+
+    Every f is one or the other, or undecided because a limit stopped the work: the conditions are exact
+    (docs/theorems.md).
 
     Parameters
     ----------
@@ -72,16 +75,16 @@ def tolerance(
         An arc ``(u, v)`` means v hears u. Never changed. Of a time-varying network only the delayed models are known;
         see :mod:`robustness.threat_models.over_time`.
     model : str, optional
-        A name in ``THREAT_MODELS``: ``"malicious"``, ``"malicious-local"``, ``"byzantine"``, ``"delayed"`` or
-        ``"delayed-local"``. Without one: all of them, as a table.
+        A name in ``THREAT_MODELS``: ``"malicious"``, ``"byzantine"`` or ``"delayed"``, each also with ``"-local"``.
+        Without one: all of them, as a table.
     tau : int, optional
         For a time-varying network, and only there, at least 1: how many steps after it was sent a value is still used,
         also through a link that has gone.
     delay, gap : int, optional
         With tau: the bound on delays, at least 1 (tau unless given), and the longest gap between two updates of a
-        vehicle (1 unless given). Only windows of l steps with ``(l - 1) + (gap - 1) + delay <= tau`` promise anything.
+        vehicle (1 unless given). A value may not be late before it is used: ``delay + gap - 1 <= tau``.
     time_limit : float, optional
-        Wall-clock seconds in all; what is not decided by then is UNDECIDED and claimed by nobody.
+        Wall-clock seconds in all; what is not decided by then is UNDECIDED, and nothing is claimed about it.
     jobs, seed, progress
         As for :func:`robustness.check_rs_robustness`.
     on_result : callable, optional
@@ -122,8 +125,14 @@ def tolerance(
     for name in names:
         result = judge(decisions, over(name))
         if isinstance(decisions, JointDecisions):
-            sequence, window = decisions.sequence, decisions.longest_window
-            result = replace(result, sequence=sequence, tau=decisions.tau, longest_window=window)
+            result = replace(
+                result,
+                sequence=decisions.sequence,
+                tau=decisions.tau,
+                delay=decisions.delay,
+                gap=decisions.gap,
+                longest_window=decisions.longest_window,
+            )
         results.append(result)
         if on_result is not None:
             on_result(result)
@@ -149,6 +158,10 @@ def _questions(
     for name, value in (("delay", delay), ("gap", gap)):
         if type(value) is not int or value < 1:
             raise InvalidParameter(f"{name} is an integer of at least 1, not {value!r}")
+    if delay > tau:
+        raise InvalidParameter(
+            f"with delays up to {delay} steps values are used for at least as long: raise tau to {delay}"
+        )
     names = MODELS_OVER_TIME if model is None else (over_time(model).name,)
     union = G.union(0, len(G))
     return JointDecisions(union, limits, sequence=G, tau=tau, delay=delay, gap=gap), names

@@ -1,11 +1,11 @@
-"""The two questions behind every threat model, asked once and remembered: robust? an attack of this kind?"""
+"""The question behind every threat model, asked once and remembered: is there an attack of this kind on f?"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
 from robustness.decision.front import check_within
-from robustness.definitions import largest_conceivable_r, r_reachable_ids
+from robustness.definitions import r_reachable_ids
 from robustness.digraph import Digraph
 from robustness.limits import Limits
 from robustness.results import RobustnessResult, Verdict
@@ -13,7 +13,7 @@ from robustness.traps.ladder import decide_trap
 from robustness.traps.question import Question, Sets, solves
 from robustness.traps.shortcuts import settle_trap
 
-__all__ = ["Decisions", "Finding", "certain_attack", "highest_promise"]
+__all__ = ["Decisions", "Finding", "certain_attack"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,13 +65,16 @@ class Decisions:
             return known
         return None
 
-    def twice_robust(self, f: int, share: float = 1.0) -> RobustnessResult:
-        """Return whether the graph is (2f+1)-robust."""
-        return self.robust(2 * f + 1, 1, share)
-
-    def strength(self, f: int, *, holds: bool) -> str:
-        """Return in words that the network is, or is not, as robust as agreement against f needs."""
-        return f"the network is {'' if holds else 'not '}{2 * f + 1}-robust"
+    def statement(self, f: int, question: Question) -> str:
+        """Return in words what is known about the network when there is no attack of this kind on f."""
+        if f == 0:
+            return "the network is 1-robust"
+        if not question.two_faces:
+            kind = "there is no local violation" if question.local else f"the network is ({f + 1},{f + 1})-robust"
+            return f"{kind} for f = {f}" if question.local else kind
+        removed = "any f-local set of nodes" if question.local else f"any {f} node{'s' * (f > 1)}"
+        trap = "local trap" if question.local else "trap"
+        return f"without {removed} the network is still {f + 1}-robust: there is no {trap} for f = {f}"
 
     @property
     def scene(self) -> str:
@@ -120,8 +123,3 @@ class Decisions:
         S1, S2 = graph.ids(result.witness.S1), graph.ids(result.witness.S2)
         bad = r_reachable_ids(graph, S1, f + 1) | r_reachable_ids(graph, S2, f + 1)
         return Finding(True, Sets(bad, S1, S2), f"violating pair of ({f + 1},{f + 1})-robustness ({result.algorithm})")
-
-
-def highest_promise(n: int) -> int:
-    """Return the largest f for which ``2f + 1 <= ceil(n/2)``: no graph on n nodes is more robust."""
-    return (largest_conceivable_r(n) - 1) // 2

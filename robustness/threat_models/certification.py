@@ -4,8 +4,8 @@
 what                        the certificate proves                                               verified by
 ==========================  ===================================================================  =====================
 guaranteed, malicious       (f+1,f+1)-robust                                                     ``verify``
-guaranteed, byzantine       no trap for f: (2f+1)-robust, or (f+1)-robust without any f nodes    ``verify_tolerance``
-guaranteed, all others      (2f+1)-robust                                                        ``verify``
+guaranteed, all others      no attack of this kind on f: (2f+1)-robust, or, when the bound is    ``verify_tolerance``
+                            in all, (f+1)-robust without any f nodes
 guaranteed, over time       jointly (2f+1)-robust over few enough steps                          ``verify_joint``
 refuted, malicious          not (f+1,f+1)-robust                                                 ``verify``
 refuted, all others         the sets M, S1, S2 of the attack                                     ``verify_tolerance``
@@ -31,8 +31,8 @@ from robustness.digraph import Digraph
 from robustness.errors import InternalError
 from robustness.evidence import Pair
 from robustness.results import Verdict
-from robustness.threat_models.models import NO_TRAP, RS_ROBUST
 from robustness.threat_models.results import AttackSets, ToleranceResult
+from robustness.traps.question import Question
 
 __all__ = ["ToleranceCertificates", "certify_tolerance"]
 
@@ -44,7 +44,9 @@ _MOST_REMOVALS = 5_000
 class ToleranceCertificates:
     """The certificates of one result; each has been verified by the kernel.
 
-    ``None`` for what is not claimed, or where a limit stopped the work, or (byzantine) where there are too many sets M.
+    ``None`` for what is not claimed; where a limit stopped the work; and for what the kernel has no evidence for: no
+    attack on a network that is not (2f+1)-robust when the bound is local or there are too many sets M, and what holds
+    only over time.
     For a time-varying network ``guaranteed`` is a certificate of joint robustness, bound to
     :func:`robustness.time_varying.canonical_sequence`, and ``refuted`` is about the union of the steps.
     """
@@ -90,14 +92,14 @@ class _Work:
 
     def promise(self, result: ToleranceResult) -> bytes | None:
         f = result.guaranteed
-        if result.threat.promise == RS_ROBUST:
+        threat = result.threat
+        if threat.question(f) == Question(f, two_faces=False):
             return self.robust(self.graph, f + 1, f + 1)
         twice = self.robust(self.graph, 2 * f + 1)
-        if result.threat.promise != NO_TRAP:
-            return twice
         if twice is not None:
-            return _tolerance(self.graph, f, 2, "total", "together", {"kind": "robust"}, twice)
-        return self.removals(f)
+            faces, bound = 2 if threat.two_faces else 1, "local" if threat.local else "total"
+            return _tolerance(self.graph, f, faces, bound, "together", {"kind": "robust"}, twice)
+        return self.removals(f) if threat.two_faces and not threat.local else None
 
     def promise_over_time(self, result: ToleranceResult) -> bytes | None:
         """Return a certificate that the sequence is jointly (2f+1)-robust, over the smallest number of steps."""
@@ -109,9 +111,7 @@ class _Work:
         r = 2 * result.guaranteed + 1
         found, certificate = certify_joint(result.sequence, r, time_limit=left, jobs=self.jobs, seed=self.seed)
         most = result.longest_window
-        if certificate is not None and (found.window is None or most is None or found.window > most):
-            raise InternalError(f"{result} was certified as {found.summary()}: please report")
-        return certificate
+        return certificate if found.window is not None and most is not None and found.window <= most else None
 
     def left(self) -> float | None:
         """Return the seconds that are left, None for no limit."""
@@ -141,9 +141,9 @@ class _Work:
 
 def _refutation(result: ToleranceResult) -> bytes | None:
     graph, sets = result.graph, result.attack_sets
-    if sets is None:
+    if sets is None or sets.remembered:
         return None
-    if result.threat.promise == RS_ROBUST:
+    if result.threat.question(sets.f) == Question(sets.f, two_faces=False):
         pair = Pair(graph.ids(sets.S1), graph.ids(sets.S2))
         evidence = {"kind": "violation", "S1": sorted(pair.first), "S2": sorted(pair.second)}
         certificate = encode(graph, sets.f + 1, sets.f + 1, Verdict.NOT_ROBUST, (evidence, b""))
