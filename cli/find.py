@@ -11,7 +11,7 @@ import click
 from .build import encode_with_attributes, write_graph
 from .exit_codes import ExitCode
 from .interruption import Overrun
-from .output import Console, graph_document
+from .output import Console, ProgressLine, graph_document
 from .query import Query, query_options
 
 if TYPE_CHECKING:
@@ -75,22 +75,22 @@ def command(
     """
     from robustness.graph_search import FindResult, FindVerdict, find_graph
 
-    def work() -> FindResult:
-        return find_graph(
-            nodes,
-            satisfies,
-            violates,
-            directed=directed,
-            minimise="edges" if fewest_edges else None,
-            time_limit=query.timeout,
-            jobs=query.jobs,
-            seed=query.seed,
-        )
+    with ProgressLine(console) as line:
 
-    try:
-        result = query.wait_for(work)
-    except Overrun:
-        result = FindResult(FindVerdict.UNDECIDED, stats={"reason": "the time limit was reached"})
+        def work() -> FindResult:
+            return find_graph(
+                nodes,
+                satisfies,
+                violates,
+                directed=directed,
+                minimise="edges" if fewest_edges else None,
+                **query.effort(line),
+            )
+
+        try:
+            result = query.wait_for(work, line)
+        except Overrun:
+            result = FindResult(FindVerdict.UNDECIDED, stats={"reason": "the time limit was reached"})
     if output is not None and result.graph is not None:
         write_graph(result.graph, output)
     if query.as_json:

@@ -210,7 +210,7 @@ def _write_evidence(console: Console, report: Report, folder: Path, query: Query
     for result in report.table.results:
 
         def work(result: ToleranceResult = result) -> ToleranceCertificates:
-            return certify_tolerance(result, time_limit=query.timeout, jobs=query.jobs, seed=query.seed)
+            return certify_tolerance(result, **query.effort())
 
         try:
             found = query.wait_for(work)

@@ -11,10 +11,14 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 from robustness.errors import InvalidParameter
 
-__all__ = ["UNLIMITED", "Limits", "Progress", "Steps"]
+__all__ = ["UNBOUNDED", "UNLIMITED", "Limits", "Progress", "Steps"]
+
+#: The shortest time limit.
+_MOMENT = 1e-9
 
 #: More steps than any machine makes.
 UNLIMITED = 1 << 62
@@ -92,6 +96,14 @@ class Limits:
         """Return these limits with another budget of steps."""
         return replace(self, steps=steps)
 
+    def keywords(self) -> dict[str, Any]:
+        """Return these limits, whole, as the keywords that every public front takes.
+
+        Once the deadline has passed a moment is left, in which a front settles what needs no search.
+        """
+        left = None if self.deadline is None else max(_MOMENT, self.deadline - time.monotonic())
+        return {"time_limit": left, "jobs": self.jobs, "seed": self.seed, "progress": self.progress}
+
     def seconds_left(self) -> float:
         """Return the seconds until the deadline (``inf`` without one, never negative)."""
         return float("inf") if self.deadline is None else max(0.0, self.deadline - time.monotonic())
@@ -99,6 +111,10 @@ class Limits:
     def expired(self) -> bool:
         """Return whether the deadline has passed."""
         return self.deadline is not None and time.monotonic() >= self.deadline
+
+
+#: One thread, for as long as it takes.
+UNBOUNDED = Limits()
 
 
 @dataclass(slots=True)

@@ -222,7 +222,7 @@ class TestProperties:
 class HasTriangle:
     """A property of the user's own."""
 
-    def holds(self, graph, deadline=None):
+    def holds(self, graph, limits=None):
         return sum(nx.triangles(graph.to_networkx()).values()) > 0
 
 
@@ -256,7 +256,7 @@ class TestLimits:
 
     def test_properties_raise_past_their_deadline(self):
         with pytest.raises(Undecided):
-            RRobust(2).holds(as_digraph(nx.wheel_graph(6)), deadline=0.0)
+            RRobust(2).holds(as_digraph(nx.wheel_graph(6)), Limits(deadline=0.0))
 
 
 class TestMisuse:

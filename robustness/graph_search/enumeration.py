@@ -5,7 +5,6 @@ So the first graph that fits has the fewest edges, and when none fits it is prov
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 
 import numpy as np
@@ -22,6 +21,7 @@ from robustness.constructions.small_graphs import (
 from robustness.digraph import Digraph
 from robustness.errors import Undecided
 from robustness.graph_search.properties import Property, RSRobust
+from robustness.limits import Limits
 
 __all__ = ["can_enumerate", "first_fitting"]
 
@@ -32,22 +32,22 @@ def can_enumerate(n: int, *, directed: bool) -> bool:
 
 
 def first_fitting(
-    n: int, satisfies: Sequence[Property], violates: Sequence[Property], *, directed: bool, deadline: float | None
+    n: int, satisfies: Sequence[Property], violates: Sequence[Property], *, directed: bool, limits: Limits
 ) -> Digraph | None:
     """Return a graph with the fewest edges that fits, or None when there is none.
 
     Raises
     ------
     Undecided
-        When the deadline passed first.
+        When a limit came first.
     """
     batch = digraphs_up_to_isomorphism(n) if directed else graphs_up_to_isomorphism(n)
     for masks in batch[_may_fit(batch, satisfies, violates)]:
-        if deadline is not None and time.monotonic() >= deadline:
+        if limits.expired():
             raise Undecided("the time limit was reached before all graphs were tried: raise it")
         graph = digraph_of_masks(masks, directed=directed)
-        if all(each.holds(graph, deadline) for each in satisfies) and not any(
-            each.holds(graph, deadline) for each in violates
+        if all(each.holds(graph, limits) for each in satisfies) and not any(
+            each.holds(graph, limits) for each in violates
         ):
             return graph
     return None

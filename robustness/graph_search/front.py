@@ -8,9 +8,8 @@
 
 from __future__ import annotations
 
-import math
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -25,6 +24,7 @@ from robustness.graph_search.properties import (
 )
 from robustness.graph_search.results import FindResult, FindVerdict
 from robustness.graph_search.synthesis import synthesise
+from robustness.limits import Limits, Progress
 from robustness.traps.smallest import smallest_trap
 
 if TYPE_CHECKING:
@@ -43,10 +43,8 @@ class _Search:
     violates: tuple[Property, ...]
     directed: bool
     minimise: bool
-    deadline: float | None
+    limits: Limits
     method: str
-    jobs: int
-    seed: int
     symmetry_breaking: bool
 
 
@@ -61,6 +59,7 @@ def find_graph(
     method: str = "auto",
     jobs: int = 1,
     seed: int = 0,
+    progress: Callable[[Progress], None] | None = None,
     symmetry_breaking: bool = True,
 ) -> FindResult:
     """Search for a graph that has all properties in ``satisfies`` and none of those in ``violates``.
@@ -82,6 +81,8 @@ def find_graph(
         uses CP-SAT with the arcs as unknowns, adding violated pairs, traps and separators as they are found.
     jobs, seed : int
         Threads and random seed of CP-SAT.
+    progress : callable, optional
+        Called with a :class:`~robustness.limits.Progress` after every graph that CP-SAT proposed.
     symmetry_breaking : bool
         Whether CP-SAT may number the nodes by role or degree; it changes the time, never the verdict.
 
@@ -103,7 +104,9 @@ def find_graph(
     """
     started = time.monotonic()
     sizes = _sizes(n)
-    search = _search(satisfies, violates, directed, minimise, time_limit, method, jobs, seed, symmetry_breaking)
+    search = _search(
+        satisfies, violates, directed, minimise, Limits.of(time_limit, jobs, seed, progress), method, symmetry_breaking
+    )
     impossible: list[int] = []
     result = FindResult(FindVerdict.IMPOSSIBLE)
     for size in sizes:
@@ -123,9 +126,7 @@ def _find_on(n: int, search: _Search) -> FindResult:
         raise InvalidParameter(f"graphs on {n} nodes are not listed up to isomorphism: use method 'auto' or 'cp-sat'")
     if search.method == "enumeration" or (listed and (search.method == "auto" or n < 2)):
         try:
-            graph = first_fitting(
-                n, search.satisfies, search.violates, directed=search.directed, deadline=search.deadline
-            )
+            graph = first_fitting(n, search.satisfies, search.violates, directed=search.directed, limits=search.limits)
         except Undecided as limit:
             return FindResult(FindVerdict.UNDECIDED, n=n, method="enumeration", stats={"reason": str(limit)})
         return _answer(graph, n, search, "enumeration", fewest=True)
@@ -139,9 +140,7 @@ def _synthesise_on(n: int, search: _Search) -> FindResult:
         search.violates,
         directed=search.directed,
         minimise=search.minimise,
-        deadline=search.deadline,
-        jobs=search.jobs,
-        seed=search.seed,
+        limits=search.limits,
         symmetry_breaking=search.symmetry_breaking,
     )
     stats = MappingProxyType(found.stats)
@@ -174,15 +173,19 @@ def _answer(
     """Return a result after checking the graph once more against everything asked for."""
     if graph is None:
         return FindResult(FindVerdict.IMPOSSIBLE, n=n, method=method, stats=stats)
-    broken = [str(each) for each in search.satisfies if not each.holds(graph)]
-    broken += [f"not {each}" for each in search.violates if each.holds(graph)]
+    made = graph.to_networkx()
+    try:
+        broken = [str(each) for each in search.satisfies if not each.holds(graph, search.limits)]
+        broken += [f"not {each}" for each in search.violates if each.holds(graph, search.limits)]
+        for each in search.satisfies:
+            if isinstance(each, HasTrap):
+                trap = smallest_trap(graph, each.f, **search.limits.keywords())
+                made.graph["trap"] = None if trap is None else trap.as_dict()
+    except Undecided as limit:
+        return FindResult(FindVerdict.UNDECIDED, n=n, method=method, stats={**stats, "reason": str(limit)})
     if broken:
         raise InternalError(f"a graph that was found is not {' and '.join(broken)}: please report")
     edges = graph.arc_count if graph.directed else graph.arc_count // 2
-    made = graph.to_networkx()
-    for each in search.satisfies:
-        if isinstance(each, HasTrap) and (trap := smallest_trap(graph, each.f)) is not None:
-            made.graph["trap"] = trap.as_dict()
     verdict = FindVerdict.FOUND if decided else FindVerdict.UNDECIDED
     return FindResult(
         verdict,
@@ -201,28 +204,21 @@ def _search(
     violates: Sequence[Property | str],
     directed: bool,
     minimise: str | None,
-    time_limit: float | None,
+    limits: Limits,
     method: str,
-    jobs: int,
-    seed: int,
     symmetry_breaking: bool,
 ) -> _Search:
     if minimise not in (None, "edges"):
         raise InvalidParameter(f"minimise is None or 'edges', not {minimise!r}")
     if method not in METHODS:
         raise InvalidParameter(f"method is one of {', '.join(METHODS)}, not {method!r}")
-    if time_limit is not None and not (math.isfinite(time_limit) and time_limit > 0):
-        raise InvalidParameter(f"time_limit is a positive, finite number of seconds, not {time_limit!r}")
-    deadline = None if time_limit is None else time.monotonic() + time_limit
     return _Search(
         _properties(satisfies),
         _properties(violates),
         directed,
         minimise is not None,
-        deadline,
+        limits,
         method,
-        jobs,
-        seed,
         symmetry_breaking,
     )
 
@@ -233,7 +229,7 @@ def _properties(given: Sequence[Property | str]) -> tuple[Property, ...]:
     read = tuple(parse_property(each) if isinstance(each, str) else each for each in given)
     for each in read:
         if not isinstance(each, Property):
-            raise InvalidParameter(f"a property has a method holds(graph, deadline), and {each!r} has none")
+            raise InvalidParameter(f"a property has a method holds(graph, limits), and {each!r} has none")
     return read
 
 

@@ -20,7 +20,6 @@ class               text                                      holds when
 from __future__ import annotations
 
 import re
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
@@ -29,6 +28,7 @@ from robustness.connectivity import smallest_separation
 from robustness.decision.front import check_rs_robustness
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter, Undecided
+from robustness.limits import UNBOUNDED, Limits
 from robustness.results import Verdict
 from robustness.traps.smallest import smallest_trap
 
@@ -49,8 +49,8 @@ __all__ = [
 class Property(Protocol):
     """Something that a graph has or has not, whatever its labels."""
 
-    def holds(self, graph: Digraph, deadline: float | None = None) -> bool:
-        """Return whether ``graph`` has it; raise :class:`Undecided` past ``deadline`` (``time.monotonic()``)."""
+    def holds(self, graph: Digraph, limits: Limits = UNBOUNDED) -> bool:
+        """Return whether ``graph`` has it; raise :class:`Undecided` when ``limits`` come first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,11 +64,11 @@ class RSRobust:
         _require_at_least("r", self.r, 0)
         _require_at_least("s", self.s, 1)
 
-    def holds(self, graph: Digraph, deadline: float | None = None) -> bool:
+    def holds(self, graph: Digraph, limits: Limits = UNBOUNDED) -> bool:
         """Decide it by the exact algorithms."""
         if self.s > max(graph.n, 1):
             return False
-        result = check_rs_robustness(graph, self.r, self.s, time_limit=_seconds_left(deadline))
+        result = check_rs_robustness(graph, self.r, self.s, **_started(limits).keywords())
         if result.verdict is Verdict.UNDECIDED:
             raise Undecided(f"whether a graph is {self} was not decided: raise the time limit")
         return result.verdict is Verdict.ROBUST
@@ -95,9 +95,9 @@ class HasTrap:
     def __post_init__(self) -> None:
         _require_at_least("f", self.f, 0)
 
-    def holds(self, graph: Digraph, deadline: float | None = None) -> bool:
+    def holds(self, graph: Digraph, limits: Limits = UNBOUNDED) -> bool:
         """Decide it by removing every set of at most f nodes."""
-        return smallest_trap(graph, self.f, time_limit=_seconds_left(deadline)) is not None
+        return smallest_trap(graph, self.f, **_started(limits).keywords()) is not None
 
     def __str__(self) -> str:
         return f"trap({self.f})"
@@ -115,7 +115,7 @@ class Connected:
     def __post_init__(self) -> None:
         _require_at_least("k", self.k, 0)
 
-    def holds(self, graph: Digraph, deadline: float | None = None) -> bool:
+    def holds(self, graph: Digraph, limits: Limits = UNBOUNDED) -> bool:
         """Decide it by removing every set of fewer than k nodes."""
         return self.k == 0 or (graph.n > self.k and smallest_separation(graph, self.k) is None)
 
@@ -135,7 +135,7 @@ class InDegree:
         if self.most is not None:
             _require_at_least("most", self.most, self.least)
 
-    def holds(self, graph: Digraph, deadline: float | None = None) -> bool:
+    def holds(self, graph: Digraph, limits: Limits = UNBOUNDED) -> bool:
         """Look at every in-degree."""
         return all(self.least <= d and (self.most is None or d <= self.most) for d in graph.in_degrees.tolist())
 
@@ -167,7 +167,7 @@ class Edges:
         if self.most is not None:
             _require_at_least("most", self.most, self.least)
 
-    def holds(self, graph: Digraph, deadline: float | None = None) -> bool:
+    def holds(self, graph: Digraph, limits: Limits = UNBOUNDED) -> bool:
         """Count them."""
         count = graph.arc_count if graph.directed else graph.arc_count // 2
         return self.least <= count and (self.most is None or count <= self.most)
@@ -217,11 +217,8 @@ def _require_at_least(name: str, value: int, least: int) -> None:
         raise InvalidParameter(f"{name} is an integer of at least {least}, not {value!r}")
 
 
-def _seconds_left(deadline: float | None) -> float | None:
-    """Return a positive time limit, however little is left, or raise when nothing is."""
-    if deadline is None:
-        return None
-    left = deadline - time.monotonic()
-    if left <= 0:
+def _started(limits: Limits) -> Limits:
+    """Return the limits unless they are over already; then nothing is decided."""
+    if limits.expired():
         raise Undecided("the time limit was reached")
-    return left
+    return limits

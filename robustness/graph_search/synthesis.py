@@ -10,7 +10,6 @@ CP-SAT proposes.
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Sequence
 from concurrent.futures import Future, wait
 from dataclasses import dataclass, field
@@ -19,12 +18,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robustness.connectivity import smallest_separation
-from robustness.decision.front import check_rs_robustness
+from robustness.decision.front import check_within
 from robustness.digraph import Digraph
 from robustness.errors import InternalError, Undecided
 from robustness.evidence import Pair
 from robustness.graph_search.model import GraphModel
 from robustness.graph_search.properties import Connected, HasTrap, Property, RSRobust
+from robustness.limits import UNBOUNDED, Limits, Progress
 from robustness.results import Verdict
 from robustness.traps.smallest import smallest_trap
 
@@ -59,9 +59,7 @@ def synthesise(
     *,
     directed: bool,
     minimise: bool = False,
-    deadline: float | None = None,
-    jobs: int = 1,
-    seed: int = 0,
+    limits: Limits = UNBOUNDED,
     symmetry_breaking: bool = True,
 ) -> Synthesis:
     """Search for a graph on n >= 2 nodes; with ``minimise``, for one with the fewest edges.
@@ -73,12 +71,12 @@ def synthesise(
     model.demand(satisfies, violates)
     found = Synthesis()
     try:
-        found.graph = _propose_until_it_fits(model, satisfies, violates, found, deadline, jobs, seed)
+        found.graph = _propose_until_it_fits(model, satisfies, violates, found, limits)
         if found.graph is not None and minimise:
             model.model.minimize(model.edge_count())
             # The optimum of every relaxation is a lower bound, so the first proposal that fits is a graph with
             # fewest edges.
-            found.graph = _propose_until_it_fits(model, satisfies, violates, found, deadline, jobs, seed)
+            found.graph = _propose_until_it_fits(model, satisfies, violates, found, limits)
             if found.graph is None:
                 raise InternalError("a graph that fits was lost while its edges were minimised: please report")
         found.is_complete = True
@@ -92,19 +90,17 @@ def _propose_until_it_fits(
     satisfies: Sequence[Property],
     violates: Sequence[Property],
     found: Synthesis,
-    deadline: float | None,
-    jobs: int,
-    seed: int,
+    limits: Limits,
 ) -> Digraph | None:
     """Return a graph that fits (with an objective: an optimal one), or None when there is none."""
     from ortools.sat.python import cp_model
 
     while True:
         solver = cp_model.CpSolver()
-        solver.parameters.num_workers = jobs
-        solver.parameters.random_seed = seed
-        if deadline is not None:
-            solver.parameters.max_time_in_seconds = max(deadline - time.monotonic(), 1e-3)
+        solver.parameters.num_workers = limits.jobs
+        solver.parameters.random_seed = limits.seed % (1 << 31)
+        if limits.deadline is not None:
+            solver.parameters.max_time_in_seconds = max(limits.seconds_left(), 1e-3)
         status = _solve(solver, model.model)
         if status == cp_model.INFEASIBLE:
             return None
@@ -116,7 +112,9 @@ def _propose_until_it_fits(
             found.edges_at_least = max(found.edges_at_least, round(solver.best_objective_bound))
         proposal = model.candidate(solver)
         found.stats["proposals"] += 1
-        learnt = _learn(model, proposal, satisfies, violates, deadline)
+        if limits.progress is not None:
+            limits.progress(Progress(found.stats["proposals"], f"{found.stats['constraints']} constraints learnt"))
+        learnt = _learn(model, proposal, satisfies, violates, limits)
         found.stats["constraints"] += learnt
         if not learnt:
             if model.model.has_objective() and status != cp_model.OPTIMAL:
@@ -153,23 +151,23 @@ def _learn(
     proposal: Digraph,
     satisfies: Sequence[Property],
     violates: Sequence[Property],
-    deadline: float | None,
+    limits: Limits,
 ) -> int:
     """Add what the proposal shows to be missing, and return how many constraints that are."""
     learnt = 0
     for wanted in satisfies:
         match wanted:
             case RSRobust(r, s):
-                learnt += _learn_pair(model, proposal, r, s, deadline)
+                learnt += _learn_pair(model, proposal, r, s, limits)
             case Connected(k):
                 learnt += _learn_separator(model, proposal, k)
     for unwanted in violates:
         if isinstance(unwanted, HasTrap):
-            learnt += _learn_trap(model, proposal, unwanted.f, deadline)
+            learnt += _learn_trap(model, proposal, unwanted.f, limits)
     return learnt
 
 
-def _learn_pair(model: GraphModel, proposal: Digraph, r: int, s: int, deadline: float | None) -> int:
+def _learn_pair(model: GraphModel, proposal: Digraph, r: int, s: int, limits: Limits) -> int:
     """Forbid a violating pair of the proposal, if it has one; on few nodes, many at once."""
     if r == 0:
         return 0
@@ -177,7 +175,7 @@ def _learn_pair(model: GraphModel, proposal: Digraph, r: int, s: int, deadline: 
     if proposal.n <= ALL_PAIRS_NODES:
         pairs = small_violations(proposal, r, s, PAIRS_A_ROUND)
     else:
-        result = check_rs_robustness(proposal, r, s, time_limit=_seconds_left(deadline))
+        result = check_within(proposal, r, s, limits)
         if result.verdict is Verdict.UNDECIDED:
             raise Undecided("a proposal could not be checked within the time limit")
         witness = result.witness
@@ -214,8 +212,8 @@ def _members(mask: int) -> frozenset[int]:
     return frozenset(i for i in range(mask.bit_length()) if mask >> i & 1)
 
 
-def _learn_trap(model: GraphModel, proposal: Digraph, f: int, deadline: float | None) -> int:
-    trap = smallest_trap(proposal, f, time_limit=_seconds_left(deadline))
+def _learn_trap(model: GraphModel, proposal: Digraph, f: int, limits: Limits) -> int:
+    trap = smallest_trap(proposal, f, **limits.keywords())
     if trap is None:
         return 0
     model.forbid_trap(Pair(proposal.ids(trap.S1), proposal.ids(trap.S2)), proposal.ids(trap.M), f)
@@ -229,7 +227,3 @@ def _learn_separator(model: GraphModel, proposal: Digraph, k: int) -> int:
         return 0
     model.forbid_separator(found.sources, found.sinks)
     return 1
-
-
-def _seconds_left(deadline: float | None) -> float | None:
-    return None if deadline is None else max(deadline - time.monotonic(), 1e-6)

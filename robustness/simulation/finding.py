@@ -6,17 +6,15 @@ model it is a solution of :mod:`robustness.traps`, which looks for M, S1 and S2 
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import Any
 
 from robustness.decision.front import check_rs_robustness
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.gain_region import gain_gap
-from robustness.limits import Progress
+from robustness.limits import Limits, Progress
 from robustness.results import Verdict
 from robustness.simulation.attacks import Attack, attack_from_trap, attack_from_violation
 from robustness.simulation.gains import arc_weights, kept_weight_bound
@@ -119,13 +117,12 @@ def find_attack(
         raise InvalidParameter(f"f is an integer of at least 0, not {f!r}")
     if graph.n < 2:
         return Finding(None, "agreement", "fewer than two nodes: nobody to disagree with")
-    deadline = float("inf") if time_limit is None else time.monotonic() + time_limit
-    options: dict[str, Any] = {"algorithm": algorithm, "jobs": jobs, "seed": seed, "progress": progress}
+    limits = Limits.of(time_limit, jobs, seed, progress)
     gap = _gap(graph, f, T, alpha, sigma)
     if model == "malicious":
-        found = _find_violation(graph, f, deadline, options)
+        found = _find_violation(graph, f, limits, algorithm)
     else:
-        found = _find_by_search(graph, f, model, deadline, options)
+        found = _find_by_search(graph, f, model, limits, algorithm)
     if found.outcome != "agreement":
         return found
     if gap is None:
@@ -142,10 +139,10 @@ def _gap(graph: Digraph, f: int, T: float | None, alpha: float | None, sigma: fl
     return gain_gap(period, 1.5 / period if alpha is None else alpha, most)
 
 
-def _find_violation(graph: Digraph, f: int, deadline: float, options: dict[str, Any]) -> Finding:
+def _find_violation(graph: Digraph, f: int, limits: Limits, algorithm: str) -> Finding:
     """Return the attack of a violating pair, or that there is none."""
     # A violating pair leaves a node of each set unreachable, so beyond s = n the third condition says no more.
-    result = check_rs_robustness(graph, f + 1, min(f + 1, graph.n), time_limit=_left(deadline), **options)
+    result = check_rs_robustness(graph, f + 1, min(f + 1, graph.n), algorithm=algorithm, **limits.keywords())
     if result.verdict is Verdict.UNDECIDED:
         return Finding(None, "undecided", f"({f + 1},{f + 1})-robustness was not decided: raise the time limit")
     if result.witness is None:
@@ -154,17 +151,14 @@ def _find_violation(graph: Digraph, f: int, deadline: float, options: dict[str, 
     return Finding(attack, "split", f"not ({f + 1},{f + 1})-robust: {attack.story()}")
 
 
-def _find_by_search(graph: Digraph, f: int, model: str, deadline: float, options: dict[str, Any]) -> Finding:
+def _find_by_search(graph: Digraph, f: int, model: str, limits: Limits, algorithm: str) -> Finding:
     """Return the attack that the trap search finds, or what its absence proves."""
     faces, local, faults = _KINDS[model]
     # (2f+1)-robust graphs have no attack of these kinds, which spares the search; that check gets half of the time.
-    left = _left(deadline)
-    half = None if left is None else left / 2
-    strong = check_rs_robustness(graph, 2 * f + 1, time_limit=half, **options)
+    strong = check_rs_robustness(graph, 2 * f + 1, algorithm=algorithm, **limits.share(1 / 2).keywords())
     if strong.verdict is Verdict.ROBUST:
         return Finding(None, "agreement", f"{2 * f + 1}-robust: f = {f} nodes do not split it, two-faced or not")
-    del options["algorithm"]
-    found = find_trap(graph, f, faces=faces, local=local, time_limit=_left(deadline), **options)
+    found = find_trap(graph, f, faces=faces, local=local, **limits.keywords())
     if found.exists is None:
         return Finding(None, "undecided", f"whether f = {f} nodes split it was not decided: raise the time limit")
     if found.exists:
@@ -177,8 +171,3 @@ def _find_by_search(graph: Digraph, f: int, model: str, deadline: float, options
     bound = "f-local set of nodes" if local else f"{f} nodes"
     known = f"{f + 1}-robust without any {bound}" if faces == 2 else "no local violation"
     return Finding(None, "agreement", f"{known}: f = {f} do not split it")
-
-
-def _left(deadline: float) -> float | None:
-    """Return the seconds until the deadline, hardly any once it has passed, or None without one."""
-    return None if deadline == float("inf") else max(deadline - time.monotonic(), 1e-3)

@@ -11,6 +11,7 @@ from typing import Any
 from robustness.decision.front import check_rs_robustness, determine_robustness
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter, RobustnessError
+from robustness.limits import Limits
 from robustness.results import Bounds, RobustnessResult, Verdict
 from robustness.threat_models import THREAT_MODELS, ToleranceTable, tolerance
 
@@ -172,17 +173,13 @@ def measure(name: str, graph: Digraph, question: Question, certificates: Path | 
     in the row. With ``certificates``, a folder, the certificate that the network is r*-robust is written there.
     """
     started = time.monotonic()
-    ends = None if question.time_limit is None else started + question.time_limit
-
-    def left() -> float | None:
-        return None if ends is None else max(ends - time.monotonic(), 0.001)
-
+    limits = Limits.of(question.time_limit, seed=question.seed)
     try:
-        found = determine_robustness(graph, time_limit=left(), seed=question.seed)
-        models = {model: tolerance(graph, model, time_limit=left(), seed=question.seed) for model in question.models}
+        found = determine_robustness(graph, **limits.keywords())
+        models = {model: tolerance(graph, model, **limits.keywords()) for model in question.models}
         table = ToleranceTable(graph, tuple(models.values()))
-        standing = _standing(graph, question, found, table, left())
-        certificate = "" if certificates is None else _certify(name, graph, found, certificates, left(), question.seed)
+        standing = _standing(graph, question, found, table, limits)
+        certificate = "" if certificates is None else _certify(name, graph, found, certificates, limits)
     except RobustnessError as problem:
         return unreadable(name, problem, question.gate)
     bounds = found.bounds
@@ -224,21 +221,21 @@ def _asks(gate: Gate) -> bool:
 
 
 def _standing(
-    graph: Digraph, question: Question, found: RobustnessResult, table: ToleranceTable, left: float | None
+    graph: Digraph, question: Question, found: RobustnessResult, table: ToleranceTable, limits: Limits
 ) -> str:
     gate = question.gate
     if not _asks(gate):
         return ""
     standings = ["passed"]
     if gate.r is not None:
-        standings.append(_robust_enough(graph, gate.r, gate.s, found, left, question.seed))
+        standings.append(_robust_enough(graph, gate.r, gate.s, found, limits))
     if gate.survive is not None:
         words = {"guaranteed": "passed", "refuted": "refuted"}
         standings += [words.get(result.standing(gate.survive).value, "undecided") for result in table.results]
     return max(standings, key=STANDINGS.index)
 
 
-def _robust_enough(graph: Digraph, r: int, s: int, found: RobustnessResult, left: float | None, seed: int) -> str:
+def _robust_enough(graph: Digraph, r: int, s: int, found: RobustnessResult, limits: Limits) -> str:
     """Say whether the network is (r,s)-robust: by what is known already, else by one more decision."""
     bounds: Bounds | None = found.bounds
     if s == 1 and bounds is not None and r <= bounds.lower.value:
@@ -247,18 +244,18 @@ def _robust_enough(graph: Digraph, r: int, s: int, found: RobustnessResult, left
         return "refuted"
     if s > max(graph.n, 1):
         return "refuted"
-    verdict = check_rs_robustness(graph, r, s, time_limit=left, seed=seed).verdict
+    verdict = check_rs_robustness(graph, r, s, **limits.keywords()).verdict
     return {Verdict.ROBUST: "passed", Verdict.NOT_ROBUST: "refuted"}.get(verdict, "undecided")
 
 
-def _certify(name: str, graph: Digraph, found: RobustnessResult, folder: Path, left: float | None, seed: int) -> str:
+def _certify(name: str, graph: Digraph, found: RobustnessResult, folder: Path, limits: Limits) -> str:
     """Write the certificate of r*-robustness and the canonical graph it is bound to; return the certificate's path."""
     from robustness.decision.certification import certify
     from robustness.files import replace_file
 
     if found.verdict is not Verdict.DETERMINED or found.r < 1:
         return ""
-    result = certify(graph, found.r, time_limit=left, seed=seed)
+    result = certify(graph, found.r, **limits.keywords())
     if result.certificate is None:
         return ""
     place = folder / f"{_file_name(name)}-{graph.sha256[:12]}"

@@ -18,8 +18,7 @@ reasons say.
 from __future__ import annotations
 
 import json
-import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import combinations
 from math import comb
@@ -30,6 +29,7 @@ from robustness.decision.certification import certify, encode
 from robustness.digraph import Digraph
 from robustness.errors import InternalError
 from robustness.evidence import Pair
+from robustness.limits import Limits, Progress
 from robustness.results import Verdict
 from robustness.threat_models.results import AttackSets, ToleranceResult
 from robustness.traps.question import Question
@@ -56,7 +56,12 @@ class ToleranceCertificates:
 
 
 def certify_tolerance(
-    result: ToleranceResult, *, time_limit: float | None = None, jobs: int = 1, seed: int = 0
+    result: ToleranceResult,
+    *,
+    time_limit: float | None = None,
+    jobs: int = 1,
+    seed: int = 0,
+    progress: Callable[[Progress], None] | None = None,
 ) -> ToleranceCertificates:
     """Return certificates of ``result.guaranteed`` and ``result.refuted``.
 
@@ -65,7 +70,7 @@ def certify_tolerance(
     result : ToleranceResult
     time_limit : float, optional
         Wall-clock seconds; refutations are written again, with their transcripts.
-    jobs, seed
+    jobs, seed, progress
         As for :func:`robustness.certify`.
 
     >>> import networkx as nx
@@ -74,7 +79,7 @@ def certify_tolerance(
     >>> print(verify_tolerance(Digraph.from_networkx(nx.wheel_graph(5)).canonical_bytes(), found.refuted).verdict)
     apart
     """
-    work = _Work(result.graph, None if time_limit is None else time.monotonic() + time_limit, jobs, seed)
+    work = _Work(result.graph, Limits.of(time_limit, jobs, seed, progress))
     guaranteed = None
     if result.graph.n >= 2 and result.guaranteed >= 0:
         guaranteed = work.promise_over_time(result) if result.over_time else work.promise(result)
@@ -83,12 +88,10 @@ def certify_tolerance(
 
 @dataclass(frozen=True, slots=True)
 class _Work:
-    """Certificates of one graph, all before one deadline."""
+    """Certificates of one graph, all within the same limits."""
 
     graph: Digraph
-    deadline: float | None
-    jobs: int
-    seed: int
+    limits: Limits
 
     def promise(self, result: ToleranceResult) -> bytes | None:
         f = result.guaranteed
@@ -105,24 +108,18 @@ class _Work:
         """Return a certificate that the sequence is jointly (2f+1)-robust, over the smallest number of steps."""
         from robustness.time_varying import certify_joint
 
-        left = self.left()
-        if result.sequence is None or (left is not None and left <= 0):
+        if result.sequence is None or self.limits.expired():
             return None
         r = 2 * result.guaranteed + 1
-        found, certificate = certify_joint(result.sequence, r, time_limit=left, jobs=self.jobs, seed=self.seed)
+        found, certificate = certify_joint(result.sequence, r, **self.limits.keywords())
         most = result.longest_window
         return certificate if found.window is not None and most is not None and found.window <= most else None
 
-    def left(self) -> float | None:
-        """Return the seconds that are left, None for no limit."""
-        return None if self.deadline is None else self.deadline - time.monotonic()
-
     def robust(self, graph: Digraph, r: int, s: int = 1) -> bytes | None:
         """Return an ordinary certificate of (r,s)-robustness, or None when it is not robust or the time is up."""
-        left = self.left()
-        if left is not None and left <= 0:
+        if self.limits.expired():
             return None
-        found = certify(graph, r, s, time_limit=left, jobs=self.jobs, seed=self.seed)
+        found = certify(graph, r, s, **self.limits.keywords())
         return found.certificate if found.verdict is Verdict.ROBUST else None
 
     def removals(self, f: int) -> bytes | None:

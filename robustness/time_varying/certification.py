@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import json
-import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -15,10 +14,11 @@ import numpy as np
 from certificates import verify_joint
 from certificates.graph import digest
 from certificates.joint import FORMAT, MAX_VALUE, encode_sequence
-from robustness.decision.certification import certify, encode
+from robustness.answers import Question
+from robustness.decision.certification import certify_within, encode
 from robustness.digraph import GraphLike
 from robustness.errors import InternalError, InvalidParameter
-from robustness.limits import Progress
+from robustness.limits import Limits, Progress
 from robustness.results import Verdict
 from robustness.time_varying.front import check_joint_robustness
 from robustness.time_varying.results import JointResult
@@ -73,12 +73,10 @@ def certify_joint(
     >>> claim.verdict, claim.window, claim.certificates
     ('robust', 2, 3)
     """
-    started = time.monotonic()
     sequence = as_time_varying(sequence)
-    effort: dict[str, Any] = {"jobs": jobs, "seed": seed, "progress": progress}
-    result = check_joint_robustness(sequence, r, s, window=window, time_limit=time_limit, **effort)
-    left = None if time_limit is None else max(1e-9, started + time_limit - time.monotonic())
-    return result, joint_certificate(sequence, result, time_limit=left, **effort)
+    limits = Limits.of(time_limit, jobs, seed, progress)
+    result = check_joint_robustness(sequence, r, s, window=window, **limits.keywords())
+    return result, joint_certificate(sequence, result, **limits.keywords())
 
 
 def joint_certificate(
@@ -94,7 +92,7 @@ def joint_certificate(
 
     The parameters and errors are those of :func:`certify_joint`.
     """
-    deadline = None if time_limit is None else time.monotonic() + time_limit
+    limits = Limits.of(time_limit, jobs, seed, progress)
     if result.verdict is Verdict.UNDECIDED:
         return None
     if result.r == 0:
@@ -106,10 +104,9 @@ def joint_certificate(
     else:
         length, parts = result.examined, []
         for union in result.unions:
-            left = None if deadline is None else deadline - time.monotonic()
-            if left is not None and left <= 0:
+            if limits.expired():
                 return None
-            part = certify(union, result.r, result.s, time_limit=left, jobs=jobs, seed=seed, progress=progress)
+            part = certify_within(Question(union, result.r, result.s), limits)
             if part.certificate is None:
                 return None
             parts.append(part.certificate)

@@ -7,7 +7,7 @@ a pair that violates it. The definition is in :mod:`robustness.traps.question`; 
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable
+from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -15,7 +15,7 @@ from certificates.graph import Label
 from robustness.decision.front import check_within
 from robustness.digraph import GraphLike, as_digraph
 from robustness.errors import InvalidParameter, Undecided
-from robustness.limits import Limits
+from robustness.limits import Limits, Progress
 from robustness.results import Verdict
 from robustness.traps.question import Question, Sets, solves
 
@@ -67,7 +67,15 @@ def is_trap(G: GraphLike, f: int, M: Iterable[Hashable], S1: Iterable[Hashable],
     return solves(graph, Question(f), Sets(graph.ids(M), graph.ids(S1), graph.ids(S2)))
 
 
-def smallest_trap(G: GraphLike, f: int, *, time_limit: float | None = None) -> Trap | None:
+def smallest_trap(
+    G: GraphLike,
+    f: int,
+    *,
+    time_limit: float | None = None,
+    jobs: int = 1,
+    seed: int = 0,
+    progress: Callable[[Progress], None] | None = None,
+) -> Trap | None:
     """Return a trap for f in G with a smallest M, or None when G has none.
 
     Parameters
@@ -77,6 +85,8 @@ def smallest_trap(G: GraphLike, f: int, *, time_limit: float | None = None) -> T
         At least 0.
     time_limit : float, optional
         Wall-clock seconds in all.
+    jobs, seed, progress
+        As for :func:`robustness.check_rs_robustness`.
 
     Raises
     ------
@@ -96,7 +106,7 @@ def smallest_trap(G: GraphLike, f: int, *, time_limit: float | None = None) -> T
     """
     _require_f(f)
     graph = as_digraph(G)
-    limits = Limits.of(time_limit)
+    limits = Limits.of(time_limit, jobs, seed, progress)
     for size in range(min(f, graph.n - 2) + 1):
         for removed in combinations(range(graph.n), size):
             rest = graph.without(frozenset(removed))

@@ -360,7 +360,7 @@ class TestFinding:
             given.append(time_limit)
             return TrapResult(None, 5, 2, local=False)
 
-        monkeypatch.setattr(finding.time, "monotonic", lambda: clock[0])
+        monkeypatch.setattr("robustness.limits.time.monotonic", lambda: clock[0])
         monkeypatch.setattr(finding, "check_rs_robustness", check)
         monkeypatch.setattr(finding, "find_trap", search)
         found = find_attack(nx.complete_graph(20), 5, model, time_limit=8.0)
@@ -374,7 +374,7 @@ class TestFinding:
         undecided = RobustnessResult(Verdict.UNDECIDED, 3, 1, None)
         monkeypatch.setattr(finding, "check_rs_robustness", lambda *_, **__: undecided)
         monkeypatch.setattr(finding, "find_trap", lambda *_, **__: TrapResult(None, 1, 2, local=False))
-        assert find_attack(nx.complete_graph(9), 1, model, time_limit=0.0).outcome == "undecided"
+        assert find_attack(nx.complete_graph(9), 1, model, time_limit=1e-9).outcome == "undecided"
 
     def test_one_search_for_all_sets(self) -> None:
         """200 nodes, f = 4: 66 million sets M, and one search."""
