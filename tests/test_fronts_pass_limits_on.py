@@ -107,7 +107,8 @@ def test_the_search_gets_all_of_it(name: str, monkeypatch: pytest.MonkeyPatch) -
     # Nothing is settled before the search.
     for ladder in ("robustness.decision.ladder", "robustness.decision.certification"):
         monkeypatch.setattr(f"{ladder}.settle", lambda *_: None)
-    monkeypatch.setattr("robustness.traps.ladder.settle_trap", lambda *_: None)
+    for room in ("traps.ladder", "threat_models.decisions"):
+        monkeypatch.setattr(f"robustness.{room}.settle_trap", lambda *_: None)
     monkeypatch.setattr(subset_search, "decide", listening(subset_search.decide))
     monkeypatch.setattr(searching, "decide", listening(searching.decide))
     prepared = {"certify_tolerance", "joint_certificate"}  # whose answer to certify was found without limits
