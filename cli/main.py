@@ -36,6 +36,8 @@ COMMANDS: Mapping[str, str] = MappingProxyType(
         "survey": ".survey:command",
         "report": ".report:command",
         "draw": ".draw:command",
+        "mend": ".mend:command",
+        "thin": ".thin:command",
     }
 )
 

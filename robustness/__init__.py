@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from robustness.figures.network import draw
     from robustness.files import read_topology, write_topology
     from robustness.graph_search import find_graph
+    from robustness.mending import Goal, MendResult, margin, mend, thin
     from robustness.reporting import report
     from robustness.results import Bound, Bounds, RobustnessResult, Verdict, Witness
     from robustness.simulation.front import simulate
@@ -78,6 +79,11 @@ _LATER = {
     "read_topology": "robustness.files",
     "robustness_profile": "robustness.decision.front",
     "simulate": "robustness.simulation.front",
+    "Goal": "robustness.mending",
+    "MendResult": "robustness.mending",
+    "margin": "robustness.mending",
+    "mend": "robustness.mending",
+    "thin": "robustness.mending",
     "report": "robustness.reporting",
     "survey": "robustness.surveying",
     "tolerance": "robustness.threat_models",
@@ -90,11 +96,13 @@ __all__ = [
     "Bounds",
     "Digraph",
     "Gate",
+    "Goal",
     "GraphWarning",
     "InternalError",
     "InvalidGraph",
     "InvalidParameter",
     "JointResult",
+    "MendResult",
     "MissingExtra",
     "RobustnessError",
     "RobustnessResult",
@@ -114,12 +122,15 @@ __all__ = [
     "is_r_robust",
     "is_rs_robust",
     "joint_curve",
+    "margin",
+    "mend",
     "r_reachable_nodes",
     "read_topology",
     "report",
     "robustness_profile",
     "simulate",
     "survey",
+    "thin",
     "tolerance",
     "write_topology",
 ]

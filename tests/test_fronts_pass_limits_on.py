@@ -53,6 +53,8 @@ FRONTS: dict[str, Callable[..., Any]] = {
     "certify_joint": lambda **effort: time_varying.certify_joint(SEQUENCE, 3, **effort),
     "joint_certificate": joint_certificate,
     "find_attack": lambda **effort: find_attack(GRAPH, 1, "delayed", **effort),
+    "mend": lambda **effort: rb.mend(nx.cycle_graph(5), 2, **effort),
+    "thin": lambda **effort: rb.thin(nx.complete_graph(5), 2, **effort),
     "find_graph": lambda **effort: rb.find_graph(19, satisfies=["2-robust"], method="cp-sat", **effort),
 }
 
@@ -63,6 +65,7 @@ PARTIAL = {
     "validate_certificate": "runs only; its progress counts runs",
     "survey": "its threads take networks, and every network is searched by one",
     "report": "the same",
+    "margin": "one 0-1 programme: the solver takes time, threads and seed, and tells no progress",
     "guaranteed": "a small seed graph",
     "replay": "the same",
     "certify_derivation": "the same",

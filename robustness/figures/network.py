@@ -176,16 +176,17 @@ def _draw_arcs(axes: Axes, picture: nx.DiGraph, graph: Digraph, marks: Marks, pl
         ([arc for arc in marks.silenced if arc[1] in marks.S1 | marks.S2], _SILENCED, 1.4, "dotted"),
         ([arc for arc in marks.counted if arc[1] in marks.S1], "#0072b2", 2.2, "solid"),
         ([arc for arc in marks.counted if arc[1] not in marks.S1], "#b36b00", 2.2, "solid"),
-        (_one_way(marks.added), _ADDED, 2.6, "solid"),
+        (_one_way(marks.added), _ADDED, 3.4, "solid"),
         (_one_way(marks.dropped), _SILENCED, 1.4, "dashed"),
     )
+    links = {arc for group in (marks.added, marks.dropped) for arc in group if (arc[1], arc[0]) in group}
     for arcs, color, thick, style in shapes:
         if arcs:
             shape = picture.copy()
             shape.add_edges_from(arcs)
             nx.draw_networkx_edges(
                 shape, places, sorted(arcs), edge_color=color, width=thick, style=style, node_size=size, arrows=True,
-                arrowsize=11, connectionstyle=bend, ax=axes,
+                arrowstyle="-" if links.issuperset(arcs) else "-|>", arrowsize=11, connectionstyle=bend, ax=axes,
             )  # fmt: skip
 
 

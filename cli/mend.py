@@ -1,0 +1,120 @@
+"""``robustness mend``: the cheapest links that make a network robust, proven."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .mending import answer, goal_options, goals_from, links_in, tell
+from .options import graph_argument, load_graph
+from .output import Console
+from .query import Query, query_options
+
+if TYPE_CHECKING:
+    from robustness.digraph import Digraph
+
+__all__ = ["SCHEMA", "command"]
+
+SCHEMA = "robustness/mend/1"
+
+_FILE = click.Path(dir_okay=False, path_type=Path)
+
+
+@click.command("mend")
+@graph_argument
+@goal_options
+@click.option("--candidates", type=_FILE, metavar="FILE", help="A network whose links can be added; all unless given.")
+@click.option("--range", "reach", type=float, metavar="X", help="Links can be added between nodes X apart at most.")
+@click.option(
+    "--cost", type=click.Choice(("one", "distance")), default="one", show_default=True, help="What a link costs."
+)
+@click.option("--forbid", type=_FILE, metavar="FILE", help="A network whose links may not be added.")
+@click.option("--require", "required", type=_FILE, metavar="FILE", help="A network whose links have to be added.")
+@click.option("--max-in-degree", type=click.IntRange(min=0), metavar="D", help="No node that gains links hears more.")
+@click.option("--one-way", is_flag=True, help="Add single arcs, also to an undirected network.")
+@click.option("-o", "--output", type=_FILE, metavar="FILE", help="Write the mended network.")
+@click.option("--certificate", type=_FILE, metavar="FILE", help="Write a certificate that it reaches the goal.")
+@click.option("--plot", "picture", type=_FILE, metavar="FILE", help="Draw it, new links thick: .svg, .png or .pdf.")
+@query_options()
+def command(
+    ctx: click.Context,
+    console: Console,
+    query: Query,
+    source: str,
+    r: int | None,
+    s: int | None,
+    survive: int | None,
+    model: str | None,
+    candidates: Path | None,
+    reach: float | None,
+    cost: str,
+    forbid: Path | None,
+    required: Path | None,
+    max_in_degree: int | None,
+    one_way: bool,
+    output: Path | None,
+    certificate: Path | None,
+    picture: Path | None,
+) -> None:
+    """Which links make GRAPH robust, at least cost?
+
+    The goal is -r R [-s S], or --survive F [--model M], or both. Positions for --range and --cost distance are those of
+    the file. Exit code 0: these links, and nothing cheaper. 30: these links, or none yet, and a lower bound. 10: no
+    choice of these candidates does it. Ctrl-C prints the best links so far, checked, and the lower bound.
+    """
+    from robustness.files.writing import require_different_files
+    from robustness.mending import MendResult, mend
+    from robustness.mending.front import links_within
+
+    goals = goals_from(r, s, survive, model)
+    if candidates is not None and reach is not None:
+        raise click.UsageError("give one of --candidates and --range.")
+    require_different_files([source, candidates, forbid, required], [output, certificate, picture])
+    graph = load_graph(source)
+    places = _positions(source, graph) if reach is not None or cost == "distance" else {}
+    wanted = links_in(candidates, graph) if reach is None else links_within(places, reach)
+    forbidden, needed = links_in(forbid, graph) or [], links_in(required, graph) or []
+    price = None if cost == "one" else _distances(places)
+
+    def work(line: Any, keep: Any) -> MendResult:
+        return mend(
+            graph,
+            goals,
+            candidates=wanted,
+            cost=price,
+            forbid=forbidden,
+            require=needed,
+            max_in_degree=max_in_degree,
+            one_way=True if one_way else None,
+            on_improvement=keep,
+            **query.effort(line),
+        )
+
+    found, is_interrupted = answer(console, query, work)
+    tell(
+        ctx, console, query, SCHEMA, found,
+        is_interrupted=is_interrupted, output=output, certificate=certificate, picture=picture,
+    )  # fmt: skip
+
+
+def _positions(source: str, graph: Digraph) -> dict[Any, tuple[float, float]]:
+    from robustness.errors import UnreadableTopology
+    from robustness.figures.positions import positions_of_file
+
+    places = positions_of_file(source, graph)
+    if places is None:
+        raise UnreadableTopology(f"{source}: places not every node: --range and --cost distance need positions")
+    return places
+
+
+def _distances(places: dict[Any, tuple[float, float]]) -> Callable[[Any, Any], float]:
+    """Return the cost of a link: how far apart its ends are, to the thousandth."""
+
+    def cost(u: Any, v: Any) -> float:
+        return round(math.dist(places[u], places[v]), 3)
+
+    return cost

@@ -1,0 +1,193 @@
+"""What ``mend`` and ``thin`` share: the goal, lists of links in files, and how an answer is told and kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .choices import THREAT_MODEL_NAMES
+from .exit_codes import ExitCode
+from .interruption import Overrun
+from .output import Console, ProgressLine, graph_document
+from .query import Query
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable
+
+    from robustness.digraph import Digraph
+    from robustness.mending import Goal, MendResult
+
+__all__ = ["answer", "goal_options", "goals_from", "links_in", "tell"]
+
+_GOAL_OPTIONS = (
+    click.option("-r", "r", type=click.IntRange(min=0), help="The goal: (R,S)-robust."),
+    click.option("-s", "s", type=click.IntRange(min=1), help="With -r; 1 unless given."),
+    click.option("--survive", type=click.IntRange(min=0), metavar="F", help="The goal: survive F malicious nodes."),
+    click.option(
+        "--model",
+        type=click.Choice(THREAT_MODEL_NAMES),
+        help="With --survive: under this threat model; malicious unless given.",
+    ),
+)
+
+
+def goal_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options that name a goal."""
+    for option in reversed(_GOAL_OPTIONS):
+        command = option(command)
+    return command
+
+
+def goals_from(r: int | None, s: int | None, survive: int | None, model: str | None) -> tuple[Goal, ...]:
+    """Return the goal that the options name, or a usage error."""
+    from robustness.mending import Goal
+
+    if r is None and survive is None:
+        raise click.UsageError("name a goal: -r R, or --survive F.")
+    if s is not None and r is None:
+        raise click.UsageError("-s goes with -r: give -r as well.")
+    if model is not None and survive is None:
+        raise click.UsageError("--model goes with --survive: give --survive as well.")
+    return (Goal(r, s or 1, survive, model or "malicious"),)
+
+
+def links_in(path: Path | None, graph: Digraph) -> list[tuple[Hashable, Hashable]] | None:
+    """Return the links that a file lists: the links of a network in any format, whose nodes are those of GRAPH."""
+    if path is None:
+        return None
+    from robustness.errors import UnreadableTopology
+    from robustness.files import read_topology
+
+    listed = read_topology(path)
+    by_name = {str(label): label for label in graph.labels}
+    unknown = [label for label in listed.labels if str(label) not in by_name]
+    if unknown:
+        raise UnreadableTopology(
+            f"{path}: the node {unknown[0]!r} is none of the network: name links between its nodes"
+        )
+    labels = listed.labels
+    pairs = ((by_name[str(labels[u])], by_name[str(labels[v])]) for u, v in listed.arcs())
+    return list(dict.fromkeys(pairs))
+
+
+def answer(
+    console: Console, query: Query, work: Callable[[ProgressLine, Callable[[MendResult], None]], MendResult]
+) -> tuple[MendResult | None, bool]:
+    """Return the answer and whether it was interrupted: then it is the best that was known."""
+    latest: list[MendResult] = []
+    with ProgressLine(console) as line:
+        try:
+            return query.wait_for(lambda: work(line, latest.append), line), False
+        except (KeyboardInterrupt, Overrun) as stop:
+            return (latest[-1] if latest else None), isinstance(stop, KeyboardInterrupt)
+
+
+def tell(
+    ctx: click.Context,
+    console: Console,
+    query: Query,
+    schema: str,
+    found: MendResult | None,
+    *,
+    is_interrupted: bool,
+    output: Path | None,
+    certificate: Path | None,
+    picture: Path | None,
+) -> None:
+    """Print an answer, write what was asked for, and end with the exit code that it deserves."""
+    if found is None:
+        console.error("interrupted: nothing is claimed" if is_interrupted else "undecided: nothing was found in time")
+        ctx.exit(ExitCode.INTERRUPTED if is_interrupted else ExitCode.UNDECIDED)
+    after = _facts(found.graph, query) if found.cost is not None else None
+    before = _facts(found.before, query)
+    if found.cost is not None:
+        _keep(console, query, found, output, certificate, picture)
+    if query.as_json:
+        facts = {"graph": graph_document(found.before), **found.as_dict(), "before": before, "after": after}
+        console.document(schema, facts)
+    else:
+        console.result("\n".join(_lines(found, before, after)))
+    if is_interrupted:
+        console.error("interrupted: what is printed holds, nothing else is claimed")
+        ctx.exit(ExitCode.INTERRUPTED)
+    codes = {"optimal": ExitCode.DONE, "impossible": ExitCode.REFUTED}
+    ctx.exit(codes.get(found.verdict.value, ExitCode.UNDECIDED))
+
+
+def _facts(graph: Digraph, query: Query) -> dict[str, Any]:
+    """Return r* and s before or after, as far as a share of the limit shows."""
+    from robustness.decision.front import determine_robustness
+
+    known = determine_robustness(graph, time_limit=query.timeout, seed=query.seed, s_time_limit=query.timeout)
+    r_at_most = known.r if known.bounds is None else known.bounds.upper.value
+    return {"r": known.r, "r_at_most": r_at_most, "s": known.s, "links": _count(graph)}
+
+
+def _count(graph: Digraph) -> int:
+    return graph.arc_count if graph.directed else graph.arc_count // 2
+
+
+def _lines(found: MendResult, before: dict[str, Any], after: dict[str, Any] | None) -> list[str]:
+    color = {"optimal": "green", "impossible": "red"}.get(found.verdict.value, "yellow")
+    head, _, rest = found.summary().partition(":")
+    lines = [f"{click.style(head + ':', fg=color, bold=True)}{rest}"]
+    arrow = "->" if found.one_way else "--"
+    shown = found.dropped if found.dropped else found.links
+    lines += [f"  {'drop' if found.dropped else 'add'}  {u!r} {arrow} {v!r}" for u, v in shown]
+    if found.witness is not None and found.witness.S1:
+        from robustness.showing import labels_in_words
+
+        lines.append(f"no candidate breaks this: {found.witness.goal}")
+        sides = (("M", found.witness.M), ("S1", found.witness.S1), ("S2", found.witness.S2))
+        lines += [f"  {name:<3} {labels_in_words(labels)}" for name, labels in sides if labels]
+    if found.reason:
+        lines.append(f"stopped: {found.reason}")
+    for name, facts in (("before", before), ("after", after)):
+        if facts is not None:
+            r = facts["r"] if facts["r"] == facts["r_at_most"] else f"{facts['r']}..{facts['r_at_most']}"
+            lines.append(f"{name:<7} {facts['links']} links, r* = {r}, s = {facts['s']}")
+    return lines
+
+
+def _keep(
+    console: Console,
+    query: Query,
+    found: MendResult,
+    output: Path | None,
+    certificate: Path | None,
+    picture: Path | None,
+) -> None:
+    """Write the mended network, a certificate of its goal, and a picture."""
+    from robustness.files import replace_file, write_topology
+
+    if output is not None:
+        write_topology(found.graph, output)
+        console.talk(f"wrote {output}")
+    if certificate is not None:
+        data = _certificate(found, query)
+        if data is None:
+            console.talk("no certificate: a limit was reached, or the kernel has no evidence of this kind")
+        else:
+            replace_file(certificate, data)
+            console.talk(f"wrote {certificate} ({len(data):,} bytes, verified)")
+    if picture is not None:
+        from robustness.figures.network import draw_to_file
+
+        draw_to_file(found.graph, found, picture)
+        console.talk(f"wrote {picture}")
+
+
+def _certificate(found: MendResult, query: Query) -> bytes | None:
+    """Return a certificate that the mended network is what the (one) goal asks."""
+    from robustness.decision.certification import certify
+    from robustness.threat_models import certify_tolerance, tolerance
+
+    goal = found.goals[0]
+    effort = query.effort()
+    if goal.r is not None:
+        return certify(found.graph, goal.r, goal.s, **effort).certificate
+    result = tolerance(found.graph, goal.model, **effort)
+    return certify_tolerance(result, **effort).guaranteed

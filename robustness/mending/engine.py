@@ -1,0 +1,273 @@
+"""The search: a master problem over the demands known so far, and the exact oracle that finds the ones left open.
+
+An implicit hitting set (Moreno-Centeno and Karp 2013). Each round the master proposes the cheapest choice; violations
+that it leaves open are found, by growing sides and then exactly; a repair breaks them one after the other until the
+network reaches the goal, and gives up what is superfluous. Every violation met on the way becomes a demand: it is open
+under the proposal, since the proposal lies inside the repaired choice. The proposal's cost is a lower bound, the
+repaired choice an upper one; both improve until they meet.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+
+from robustness.digraph import Digraph
+from robustness.errors import Undecided
+from robustness.limits import Limits, Progress
+from robustness.mending.actions import Actions
+from robustness.mending.goal import Part
+from robustness.mending.growing import every_pair, grown_sides, shrunk
+from robustness.mending.master import Master
+from robustness.mending.oracle import first_violation
+from robustness.mending.rows import Side, Unit, bits, fit, holds_apart, masks_of, sides_of, units, unlocalizers, worth
+from robustness.traps.question import Sets
+
+__all__ = ["Search", "with_actions"]
+
+#: How many orders of giving up superfluous links are tried in a round.
+_ORDERS = 3
+
+#: Pairs of grown sides are added all together up to so many, beyond that only those that a proposal leaves open.
+_MOST_PAIRS = 300
+
+#: On so few nodes every violation of (r,s)-robustness is a demand from the start: faster than to solve again and again.
+_FEW = 8
+
+Pair = tuple[Side, Side]
+
+
+def with_actions(graph: Digraph, actions: Actions, chosen: Iterable[int]) -> Digraph:
+    """Return the network with the links of the chosen actions."""
+    labels = graph.labels
+    arcs = [*graph.arcs(), *(arc for a in sorted(chosen) for arc in actions.items[a].arcs)]
+    return Digraph(labels, ((labels[u], labels[v]) for u, v in arcs), directed=graph.directed)
+
+
+@dataclass(slots=True)
+class Search:
+    """One question, its demands, the best choice so far and the proven lower bound.
+
+    Attributes
+    ----------
+    best : frozenset of int or None
+        A choice that was checked to reach the goal.
+    bound : int
+        No choice that reaches the goal costs less.
+    witness : (Part, Sets) or None
+        What no choice can break; then the goal is out of reach.
+    rows : list of pairs of sides
+        The demands that the master problem holds.
+    """
+
+    graph: Digraph
+    actions: Actions
+    parts: Sequence[Part]
+    limits: Limits
+    on_improvement: Callable[[Search], None] | None = None
+    best: frozenset[int] | None = None
+    bound: int = 0
+    witness: tuple[Part, Sets] | None = None
+    is_impossible: bool = False
+    reason: str = ""
+    rows: list[Pair] = field(default_factory=list)
+    _base: list[int] = field(default_factory=list)
+    _seen: set[Pair] = field(default_factory=set)
+    _pool: dict[tuple[Part, int], dict[int, Side]] = field(default_factory=dict)
+    _master: Master | None = None
+
+    def cost(self, chosen: Iterable[int]) -> int:
+        """Return the cost of a choice, in units of the scale."""
+        return sum(self.actions.items[a].cost for a in chosen)
+
+    @property
+    def is_optimal(self) -> bool:
+        """Whether the best choice is proven to be cheapest."""
+        return self.best is not None and self.cost(self.best) <= self.bound
+
+    def run(self) -> None:
+        """Search until the bounds meet, the goal is proven to be out of reach, or a limit comes."""
+        self._base = masks_of(self.graph)
+        everything = frozenset(range(len(self.actions.items)))
+        try:
+            self.witness = first_violation(with_actions(self.graph, self.actions, everything), self.parts, self.limits)
+            self.is_impossible = self.witness is not None
+            if self.is_impossible:
+                return
+            self._master = Master(self.graph, self.actions)
+            self._grow(self._base)
+            for part in self.parts:
+                if part.trap is None and self.graph.n <= _FEW:
+                    for pair in every_pair(self._base, part):
+                        self._learn(*pair)
+            self._improve(self._repair(self.actions.required, 0))
+            turn = 1
+            while not self.is_optimal and not self.is_impossible:
+                self._round(self._master, turn)
+                turn += 1
+        except Undecided:
+            self.reason = "the time limit was reached"
+
+    def _round(self, master: Master, turn: int) -> None:
+        """Propose, and repair; raise :class:`Undecided` when a limit came."""
+        proposal = master.solve(self.limits.share(0.7), self.best)
+        if proposal.bound is None:
+            self.is_impossible = True
+            return
+        if proposal.bound > self.bound:
+            self.bound = proposal.bound
+            self._tell()
+        if proposal.chosen is not None and not self.is_optimal:
+            known = len(self.rows)
+            self._grow(self._heard(proposal.chosen))
+            repaired = self._repair(proposal.chosen, turn)
+            if len(self.rows) == known and proposal.is_optimal:  # the proposal itself reaches the goal
+                self.bound = max(self.bound, self.cost(proposal.chosen))
+            self._improve(repaired)
+        if not self.is_optimal and self.limits.expired():
+            raise Undecided("the limit came before the bounds met")
+
+    def _tell(self) -> None:
+        if self.limits.progress is not None:
+            best = "none yet" if self.best is None else f"{self.actions.price(self.cost(self.best))}"
+            note = f"demands, best {best}, at least {self.actions.price(self.bound)}"
+            self.limits.progress(Progress(len(self.rows), note))
+        if self.on_improvement is not None:
+            self.on_improvement(self)
+
+    def _improve(self, chosen: frozenset[int] | None) -> None:
+        if chosen is not None and (self.best is None or self.cost(chosen) < self.cost(self.best)):
+            self.best = chosen
+            self._tell()
+
+    def _grow(self, heard: Sequence[int]) -> None:
+        """Take sides grown in a network into the pool, and pairs of them into the master problem."""
+        for part in self.parts:
+            known = {M for other, M in self._pool if other == part} | ({0} if part.trap is None else set())
+            for M in sorted(known):
+                for side in grown_sides(heard, part, M):
+                    self._take(side, heard)
+
+    def _take(self, side: Side, heard: Sequence[int]) -> None:
+        """Add a side to the pool; pair it with all others there that fit."""
+        group = self._pool.setdefault((side.part, side.M), {})
+        if side.S in group:
+            return
+        for other in list(group.values()):
+            if fit(side, other) and (len(self.rows) < _MOST_PAIRS or holds_apart(side, other, heard)):
+                self._learn(side, other)
+        group[side.S] = side
+
+    def _learn(self, first: Side, second: Side) -> None:
+        pair = (first, second) if first.S < second.S else (second, first)
+        if pair not in self._seen and self._master is not None and holds_apart(*pair, self._base):
+            self._seen.add(pair)
+            self.rows.append(pair)
+            self._master.add(*pair)
+
+    def _heard(self, chosen: Iterable[int]) -> list[int]:
+        heard = list(self._base)
+        for a in chosen:
+            for tail, head in self.actions.items[a].arcs:
+                heard[head] |= 1 << tail
+        return heard
+
+    def _repair(self, proposal: frozenset[int], turn: int) -> frozenset[int] | None:
+        """Break what the proposal leaves open; return a choice that reaches the goal, or None when caps forbid it."""
+        chosen = set(proposal)
+        rng = random.Random(f"{self.limits.seed} {turn}")
+        while True:
+            pair = self._open_pair(chosen)
+            if pair is None:
+                return self._reduced(frozenset(chosen), rng)
+            if not self._break(pair, chosen, rng):
+                return None
+
+    def _open_pair(self, chosen: Iterable[int]) -> Pair | None:
+        """Return a demand that the choice does not meet: a known one, else the oracle's; None when all are met."""
+        heard = self._heard(chosen)
+        for pair in self.rows:
+            if holds_apart(*pair, heard):
+                return pair
+        found = first_violation(with_actions(self.graph, self.actions, chosen), self.parts, self.limits)
+        if found is None:
+            return None
+        first, second = shrunk(*sides_of(*found), heard)
+        for side in (first, second):
+            self._take(side, heard)
+        self._learn(first, second)
+        self._grow(heard)
+        return first, second
+
+    def _break(self, pair: Pair, chosen: set[int], rng: random.Random) -> bool:
+        """Add the cheapest actions that meet one more unit of the pair; return whether there are any."""
+        heard = self._heard(chosen)
+        gains = self._gains(heard)
+        options: list[tuple[float, float, list[int]]] = []
+        n = len(heard)
+        for unit in (*units(pair[0], n), *units(pair[1], n), *unlocalizers(pair[0], n)):
+            missing = unit.enough - (heard[unit.node] & unit.outside).bit_count()
+            if missing <= 0:
+                continue
+            supplies = [a for a in self._suppliers(unit) if a not in chosen and self._is_free(a, heard)]
+            if len(supplies) >= missing:
+                supplies.sort(key=lambda a: (self.actions.items[a].cost - gains.get(a, 0.0), rng.random()))
+                taken = supplies[:missing]
+                price = sum(self.actions.items[a].cost - gains.get(a, 0.0) for a in taken)
+                options.append((price, rng.random(), taken))
+        if not options:
+            return False
+        chosen.update(min(options)[2])
+        return True
+
+    def _suppliers(self, unit: Unit) -> list[int]:
+        return [
+            a
+            for a, item in enumerate(self.actions.items)
+            if any(head == unit.node and unit.outside >> tail & 1 for tail, head in item.arcs)
+        ]
+
+    def _gains(self, heard: Sequence[int]) -> dict[int, float]:
+        """Return for every action how much it helps with all open demands, at most nine tenths of its cost."""
+        wanted: dict[tuple[int, int], float] = {}
+        n = len(heard)
+        sides = {side for pair in self.rows if holds_apart(*pair, heard) for side in pair}
+        for side in sides:
+            if worth(side, heard):
+                continue
+            members = list(units(side, n))
+            for unit in members:
+                missing = unit.enough - (heard[unit.node] & unit.outside).bit_count()
+                for tail in bits(unit.outside & ~heard[unit.node]):
+                    place = (tail, unit.node)
+                    wanted[place] = wanted.get(place, 0.0) + 1.0 / (missing * missing * len(members))
+        most = max(wanted.values(), default=1.0)
+        return {
+            a: 0.9 * item.cost * sum(wanted.get(arc, 0.0) for arc in item.arcs) / (len(item.arcs) * most)
+            for a, item in enumerate(self.actions.items)
+        }
+
+    def _is_free(self, action: int, heard: Sequence[int]) -> bool:
+        most = self.actions.most
+        if most is None:
+            return True
+        arcs = self.actions.items[action].arcs
+        return all((heard[head] & ~self._base[head]).bit_count() < most[head] for _, head in arcs)
+
+    def _reduced(self, chosen: frozenset[int], rng: random.Random) -> frozenset[int]:
+        """Return the choice without what is superfluous: no single action can go. Several orders are tried."""
+        best: frozenset[int] | None = None
+        for turn in range(_ORDERS):
+            kept = set(chosen)
+            order = sorted(kept - self.actions.required)
+            rng.shuffle(order)
+            if turn % 2 == 0:
+                order.sort(key=lambda a: -self.actions.items[a].cost)
+            for a in order:
+                kept.discard(a)
+                if self._open_pair(kept) is not None:
+                    kept.add(a)
+            if best is None or self.cost(kept) < self.cost(best):
+                best = frozenset(kept)
+        return chosen if best is None else best

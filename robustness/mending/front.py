@@ -1,0 +1,225 @@
+"""THE front of mending: ``mend`` adds the cheapest links that reach a goal, ``thin`` keeps the cheapest."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from dataclasses import replace
+
+from robustness.digraph import Digraph, GraphLike, as_digraph
+from robustness.errors import InvalidParameter
+from robustness.limits import Limits, Progress
+from robustness.mending.actions import Actions, CostLike, Link, actions_for
+from robustness.mending.engine import Search, with_actions
+from robustness.mending.goal import Goal, Part, goals_of, parts_of
+from robustness.mending.results import Demand, MendResult, MendVerdict
+from robustness.mending.rows import sets_of
+from robustness.natural_order import natural_key
+from robustness.traps.question import Sets
+
+__all__ = ["links_within", "mend", "thin"]
+
+
+def mend(
+    G: GraphLike,
+    goal: object,
+    *,
+    candidates: Iterable[Link] | None = None,
+    cost: CostLike = None,
+    forbid: Iterable[Link] = (),
+    require: Iterable[Link] = (),
+    max_in_degree: int | None = None,
+    one_way: bool | None = None,
+    time_limit: float | None = None,
+    jobs: int = 1,
+    seed: int = 0,
+    progress: Callable[[Progress], None] | None = None,
+    on_improvement: Callable[[MendResult], None] | None = None,
+) -> MendResult:
+    """Return the cheapest links whose addition makes G reach a goal, exactly.
+
+    Parameters
+    ----------
+    G : networkx graph or Digraph
+        An arc ``(u, v)`` means v hears u. Never changed.
+    goal : Goal, int, pair of int, or several of these
+        What the network has to be: ``Goal(r=2, s=2)`` or ``(2, 2)``; ``Goal(survive=1, model="delayed")``; ``3`` for
+        3-robust.
+    candidates : iterable of pairs of nodes, optional
+        The links that can be added; all that are not there unless given. :func:`links_within` gives those within a
+        radio range.
+    cost : mapping from links to numbers, or function of two nodes, optional
+        What a link costs, at least 0; 1 unless given.
+    forbid, require : iterable of pairs of nodes
+        Links that may not, and that must, be added.
+    max_in_degree : int, optional
+        How many nodes a node that gains links can hear at most.
+    one_way : bool, optional
+        Whether an action is one arc; unless given, for directed graphs.
+    time_limit : float, optional
+        Wall-clock seconds; past it the best links so far are FEASIBLE, with the lower bound that is proven.
+    jobs, seed, progress
+        As for :func:`robustness.check_rs_robustness`.
+    on_improvement : callable, optional
+        Called with the result so far whenever the links or the bound improve.
+
+    Returns
+    -------
+    MendResult
+
+    Raises
+    ------
+    InvalidGraph, InvalidParameter
+        For a goal, links or costs that cannot be meant.
+
+    Notes
+    -----
+    Adding links never destroys (r,s)-robustness, nor makes a trap or a violation, so every violation of a choice is one
+    of every smaller choice (:mod:`robustness.mending.rows`). An implicit hitting set
+    (:mod:`robustness.mending.engine`) finds as many of them as the optimum needs. Exponential in the worst case.
+
+    >>> import networkx as nx
+    >>> found = mend(nx.path_graph(4), (2, 2))
+    >>> found.verdict.value, found.cost, found.lower_bound
+    ('optimal', 2, 2)
+    """
+    graph = as_digraph(G)
+    goals = goals_of(goal)
+    arcs_only = graph.directed if one_way is None else bool(one_way)
+    actions = actions_for(
+        graph, candidates, cost, forbid=forbid, require=require, max_in_degree=max_in_degree, one_way=arcs_only
+    )
+    limits = Limits.of(time_limit, jobs, seed, progress)
+    return _answer(graph, goals, actions, limits, arcs_only, on_improvement)
+
+
+def thin(
+    G: GraphLike,
+    goal: object,
+    *,
+    cost: CostLike = None,
+    keep: Iterable[Link] = (),
+    time_limit: float | None = None,
+    jobs: int = 1,
+    seed: int = 0,
+    progress: Callable[[Progress], None] | None = None,
+    on_improvement: Callable[[MendResult], None] | None = None,
+) -> MendResult:
+    """Return the cheapest of G's own links that still reach a goal, exactly; the others can go.
+
+    The dual of :func:`mend`: the empty network is mended with the links of G as candidates.
+
+    Parameters
+    ----------
+    G, goal, cost, time_limit, jobs, seed, progress, on_improvement
+        As for :func:`mend`; a cost is what it costs to keep a link.
+    keep : iterable of pairs of nodes
+        Links that may not go.
+
+    Returns
+    -------
+    MendResult
+        ``links`` stay and ``dropped`` go. IMPOSSIBLE when G itself does not reach the goal.
+
+    >>> import networkx as nx
+    >>> found = thin(nx.complete_graph(5), (2, 2))
+    >>> found.verdict.value, found.cost, len(found.dropped)
+    ('optimal', 7, 3)
+    """
+    graph = as_digraph(G)
+    goals = goals_of(goal)
+    labels = graph.labels
+    own = [(labels[u], labels[v]) for u, v in graph.arcs() if graph.directed or u < v]
+    empty = Digraph(labels, [], directed=graph.directed)
+    kept = list(keep)
+    for link in kept:
+        if tuple(link) not in own and tuple(reversed(link)) not in own:
+            raise InvalidParameter(f"the link {link!r} that is to stay is not there: leave it out")
+    actions = actions_for(empty, own, cost, forbid=(), require=kept, max_in_degree=None, one_way=graph.directed)
+    limits = Limits.of(time_limit, jobs, seed, progress)
+
+    def with_dropped(result: MendResult) -> MendResult:
+        if result.cost is None:
+            return replace(result, before=graph, graph=graph)
+        stay = set(result.links)
+        dropped = sorted(
+            (
+                link
+                for link in own
+                if (link not in stay and (link[1], link[0]) not in stay) or (graph.directed and link not in stay)
+            ),
+            key=natural_key,
+        )
+        return replace(result, before=graph, dropped=tuple(dropped))
+
+    def tell(result: MendResult) -> None:
+        if on_improvement is not None:
+            on_improvement(with_dropped(result))
+
+    return with_dropped(_answer(empty, goals, actions, limits, graph.directed, tell))
+
+
+def links_within(positions: Mapping[Hashable, Sequence[float]], reach: float) -> list[Link]:
+    """Return all pairs of nodes whose places are at most ``reach`` apart: what a radio of this range can link.
+
+    >>> links_within({"a": (0, 0), "b": (3, 4), "c": (9, 9)}, 5.0)
+    [('a', 'b')]
+    """
+    nodes = sorted(positions, key=natural_key)
+    return [
+        (u, v)
+        for k, u in enumerate(nodes)
+        for v in nodes[k + 1 :]
+        if sum((a - b) ** 2 for a, b in zip(positions[u], positions[v], strict=True)) <= reach * reach
+    ]
+
+
+def _answer(
+    graph: Digraph,
+    goals: tuple[Goal, ...],
+    actions: Actions,
+    limits: Limits,
+    one_way: bool,
+    on_improvement: Callable[[MendResult], None] | None,
+) -> MendResult:
+    started = time.monotonic()
+    parts = parts_of(goals, graph.n)
+
+    def told(search: Search) -> None:
+        if on_improvement is not None:
+            on_improvement(_result(search, goals, one_way, time.monotonic() - started))
+
+    search = Search(graph, actions, parts, limits, told)
+    search.run()
+    return _result(search, goals, one_way, time.monotonic() - started)
+
+
+def _result(search: Search, goals: tuple[Goal, ...], one_way: bool, seconds: float) -> MendResult:
+    graph, actions, best = search.graph, search.actions, search.best
+    if search.is_impossible:
+        verdict = MendVerdict.IMPOSSIBLE
+    elif best is None:
+        verdict = MendVerdict.UNDECIDED
+    else:
+        verdict = MendVerdict.OPTIMAL if search.is_optimal else MendVerdict.FEASIBLE
+    chosen = frozenset() if best is None else best
+    ends = [tuple(graph.labels[i] for i in actions.items[a].ends) for a in chosen]
+    return MendResult(
+        verdict,
+        goals,
+        tuple(sorted(ends, key=natural_key)),  # type: ignore[arg-type]
+        None if best is None else actions.price(search.cost(best)),
+        actions.price(search.bound),
+        with_actions(graph, actions, chosen),
+        graph,
+        demands=tuple(_demand(first.part, graph, sets_of(first, second)) for first, second in search.rows),
+        witness=None if search.witness is None else _demand(search.witness[0], graph, search.witness[1]),
+        one_way=one_way,
+        reason=search.reason,
+        seconds=seconds,
+    )
+
+
+def _demand(part: Part, graph: Digraph, sets: Sets) -> Demand:
+    M, S1, S2 = (graph.labels_of(ids) for ids in sets)
+    return Demand(str(part), M, S1, S2)

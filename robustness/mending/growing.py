@@ -1,0 +1,80 @@
+"""Sides grown from seeds: cheap violations before the exact search is asked.
+
+A set grows while one of its nodes hears too much from outside, by a node that this node hears, until it is a side of
+worth 0 (up to nodes that are let off), or everything. Two grown sides that are disjoint are a violation. Not complete:
+what it does not find, the exact search does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from robustness.mending.goal import Part
+from robustness.mending.rows import Side, bits, holds_apart, worth
+
+__all__ = ["every_pair", "grown_sides", "shrunk"]
+
+
+def grown_sides(heard: Sequence[int], part: Part, M: int = 0) -> Iterator[Side]:
+    """Yield sides of worth below s in the network with these in-neighbour masks: from every node, and every arc.
+
+    For traps with two faces M is given; violations with one face are left to the exact search.
+    """
+    if part.trap is not None and not part.trap.two_faces:
+        return
+    n = len(heard)
+    everybody = ((1 << n) - 1) & ~M
+    seen: set[int] = set()
+    seeds = [1 << i for i in range(n)]
+    seeds += [1 << i | 1 << j for i in range(n) for j in bits(heard[i]) if j < i or not heard[j] >> i & 1]
+    for seed in seeds:
+        for spared in (0, seed) if part.s > 1 and seed.bit_count() == 1 else (0,):
+            if seed & M:
+                continue
+            S = _grow(heard, seed, everybody, part.enough, spared)
+            if S and S not in seen and S != everybody:
+                seen.add(S)
+                side = Side(part, M, S)
+                if worth(side, heard) < part.s:
+                    yield side
+
+
+def every_pair(heard: Sequence[int], part: Part) -> Iterator[tuple[Side, Side]]:
+    """Yield every violation of (r,s)-robustness in a network of a few nodes: ``3^n / 2`` pairs are looked at."""
+    everybody = (1 << len(heard)) - 1
+    sides = [side for S in range(1, everybody) if worth(side := Side(part, 0, S), heard) < part.s]
+    for k, first in enumerate(sides):
+        for second in sides[k + 1 :]:
+            if not first.S & second.S and holds_apart(first, second, heard):
+                yield first, second
+
+
+def _grow(heard: Sequence[int], seed: int, everybody: int, enough: int, spared: int) -> int:
+    """Return the grown set, or 0 when it becomes everything."""
+    S = seed
+    while True:
+        crowded = next((i for i in bits(S & ~spared) if (heard[i] & everybody & ~S).bit_count() >= enough), None)
+        if crowded is None:
+            return S if spared == 0 or S != seed else 0
+        # The newcomer that asks for the fewest others.
+        choices = list(bits(heard[crowded] & everybody & ~S))
+        S |= 1 << min(choices, key=lambda j: ((heard[j] & everybody & ~S).bit_count(), j))
+        if S == everybody:
+            return 0
+
+
+def shrunk(first: Side, second: Side, heard: Sequence[int]) -> tuple[Side, Side]:
+    """Return a violation from which no single normal node can go: small sides make demands that are hard to evade.
+
+    Nodes that hear much from outside are the first to be spared.
+    """
+    everybody = (1 << len(heard)) - 1
+    pair = [first, second]
+    order = [(k, i) for k, side in enumerate(pair) for i in bits(side.S & ~side.M)]
+    order.sort(key=lambda place: (-(heard[place[1]] & everybody & ~pair[place[0]].S).bit_count(), place))
+    for k, i in order:
+        side = pair[k]
+        smaller = side._replace(S=side.S & ~(1 << i))
+        if smaller.S & ~side.M and holds_apart(smaller, pair[1 - k], heard):
+            pair[k] = smaller
+    return pair[0], pair[1]

@@ -1,0 +1,145 @@
+"""What a question about mending is answered with: frozen, and never called optimal without a proof."""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Hashable
+from dataclasses import dataclass, field
+from typing import Any
+
+from certificates.graph import Label
+from robustness.digraph import Digraph, GraphLike
+from robustness.mending.goal import Goal
+from robustness.natural_order import natural_key
+from robustness.showing import Shown
+
+__all__ = ["Demand", "MendResult", "MendVerdict"]
+
+Link = tuple[Label, Label]
+
+
+class MendVerdict(enum.Enum):
+    """What is known about the cheapest links."""
+
+    #: The links reach the goal, and nothing cheaper does.
+    OPTIMAL = "optimal"
+    #: The links reach the goal; whether something cheaper does is not known.
+    FEASIBLE = "feasible"
+    #: A limit came before any choice that reaches the goal.
+    UNDECIDED = "undecided"
+    #: No choice of these candidates reaches the goal.
+    IMPOSSIBLE = "impossible"
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """A violation of the network before mending, which every choice has to break.
+
+    ``goal`` says of which condition in words; M is empty for (r,s)-robustness.
+    """
+
+    goal: str
+    M: frozenset[Label]
+    S1: frozenset[Label]
+    S2: frozenset[Label]
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class MendResult(Shown):
+    """The cheapest links that reach a goal, as far as they are known.
+
+    Attributes
+    ----------
+    verdict : MendVerdict
+    goals : tuple of Goal
+    links : tuple of pairs of labels
+        The links to add (of :func:`robustness.thin`: to keep), in natural order; with ``one_way`` an arc each.
+    dropped : tuple of pairs of labels
+        Of :func:`robustness.thin`: the links that can go.
+    cost : int or float or None
+        What ``links`` cost together; None without any.
+    lower_bound : int or float
+        No choice that reaches the goal costs less; proven.
+    graph : Digraph
+        The network with the links; the network as it was when there are none.
+    before : Digraph
+        The network as it was.
+    demands : tuple of Demand
+        The violations from which the lower bound follows.
+    witness : Demand or None
+        When the goal is out of reach: what no candidate breaks. None when it is the constraints together that rule
+        every choice out.
+    one_way : bool
+    reason : str
+        Why nothing more is known, empty otherwise.
+    seconds : float
+    """
+
+    verdict: MendVerdict
+    goals: tuple[Goal, ...]
+    links: tuple[Link, ...]
+    cost: int | float | None
+    lower_bound: int | float
+    graph: Digraph
+    before: Digraph
+    dropped: tuple[Link, ...] = ()
+    demands: tuple[Demand, ...] = field(default=(), repr=False)
+    witness: Demand | None = None
+    one_way: bool = False
+    reason: str = ""
+    seconds: float = field(default=0.0, compare=False)
+
+    def __bool__(self) -> bool:
+        raise TypeError("a MendResult has no truth value: compare .verdict")
+
+    @property
+    def goal(self) -> str:
+        """The goals in words."""
+        return " and ".join(map(str, self.goals))
+
+    def pictured(self) -> GraphLike | None:
+        """Return the mended network."""
+        return self.graph
+
+    def summary(self) -> str:
+        """Return the answer in one sentence."""
+        if self.verdict is MendVerdict.IMPOSSIBLE:
+            return f"impossible: no choice of these links reaches the goal, {self.goal}"
+        if self.verdict is MendVerdict.UNDECIDED:
+            return f"undecided: no links that reach the goal, {self.goal}; they cost at least {self.lower_bound}"
+        what = f"{len(self.links)} link{'s' * (len(self.links) != 1)}, cost {self.cost}"
+        if self.dropped:
+            what = f"{len(self.dropped)} link{'s' * (len(self.dropped) != 1)} can go, {what} stay"
+        if self.verdict is MendVerdict.OPTIMAL:
+            return f"optimal: {what}; nothing cheaper reaches the goal, {self.goal}"
+        return f"feasible: {what}; at least {self.lower_bound} is needed for the goal, {self.goal}"
+
+    def evidence(self) -> list[tuple[str, str]]:
+        """Return the links and the bound, as rows of a name and a text."""
+        links = ", ".join(f"{u!r} - {v!r}" for u, v in self.links)
+        return [("links", links), ("lower bound", f"{self.lower_bound}, from {len(self.demands)} violations")]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the answer as JSON-ready values."""
+
+        def sets(demand: Demand) -> dict[str, Any]:
+            sides = {name: _ordered(getattr(demand, name)) for name in ("M", "S1", "S2")}
+            return {"goal": demand.goal, **sides}
+
+        return {
+            "verdict": self.verdict.value,
+            "goal": self.goal,
+            "links": [list(link) for link in self.links],
+            "dropped": [list(link) for link in self.dropped],
+            "one_way": self.one_way,
+            "cost": self.cost,
+            "lower_bound": self.lower_bound,
+            "witness": None if self.witness is None else sets(self.witness),
+            "demands": len(self.demands),
+            "reason": self.reason,
+            "seconds": round(self.seconds, 6),
+        }
+
+
+def _ordered(labels: frozenset[Hashable]) -> list[Any]:
+    return sorted(labels, key=natural_key)
