@@ -65,9 +65,10 @@ test-slow: $(READY) ## the exhaustive sweeps
 coverage-kernel: $(READY) ## every branch of the trusted kernel is taken by its own tests
 	$(BIN)/python -m pytest -q tests/certificates --cov=certificates --cov-fail-under=100 --cov-report=term-missing
 
-lint: $(READY) ## ruff: rules, docstrings and format
+lint: $(READY) ## ruff: rules, docstrings and format; spelling
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check --quiet .
+	$(BIN)/python -m pytest -q -n 0 tests/test_spelling.py
 
 types: $(READY) ## mypy --strict
 	$(BIN)/mypy

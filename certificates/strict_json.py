@@ -21,7 +21,7 @@ class Opaque(str):
 def parse(data: bytes, error: type[MalformedCertificate], what: str) -> Any:
     """Return the JSON value in ``data``; whatever is wrong with it is one ``error``.
 
-    Deep nesting stops at the interpreter's own recursion limit and is reported, not suffered. Floats are
+    Nesting deeper than the recursion limit of the interpreter is an error of the text, and told as one. Floats are
     :class:`Opaque` text, so that they may stand only where nobody reads them (attributes in node-link documents).
     """
 

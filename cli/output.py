@@ -116,10 +116,9 @@ def set_document(labels: Iterable[Label]) -> list[Label]:
 
 def set_text(labels: Iterable[Label], *, whole: bool = False) -> str:
     """Return a set of labels as text, in canonical order; a long one is cut unless ``whole``."""
-    ordered = set_document(labels)
-    shown = ordered if whole else ordered[:_LABELS_SHOWN]
-    more = f", … {len(ordered) - len(shown)} more" if len(shown) < len(ordered) else ""
-    return "{" + ", ".join(map(repr, shown)) + more + "}"
+    from robustness.showing import listed_in_words
+
+    return listed_in_words(set_document(labels), None if whole else _LABELS_SHOWN)
 
 
 def _write(text: str, *, to_error: bool, end: str = "\n") -> None:

@@ -148,19 +148,16 @@ def _scenario(network: Topology, query: Query, asked: Simulation) -> tuple[Scena
 def node_named(graph: Digraph, text: str) -> Label:
     """Return the node that ``text`` names: a label in JSON, such as ``3``, ``"3"`` or ``[0, 1]``, or a bare string."""
     from robustness.errors import InvalidParameter
+    from robustness.json_labels import from_json
 
     try:
-        label = _hashable(json.loads(text))
+        label = from_json(json.loads(text))
     except (ValueError, RecursionError):
         label = text
     for candidate in (label, text):
         if type(candidate) in (int, str, tuple) and candidate in graph.index:
             return candidate
     raise InvalidParameter(f"a node is named by its label, but {text!r} is none: list them with 'check -v'")
-
-
-def _hashable(value: Any) -> Any:
-    return tuple(_hashable(part) for part in value) if isinstance(value, list) else value
 
 
 def _worst(scenario: Scenario, starts: list[Start], query: Query) -> tuple[Scenario, list[Start]]:

@@ -10,7 +10,7 @@ import base64
 import html
 import importlib
 import io
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from robustness.digraph import GraphLike, as_digraph
@@ -20,7 +20,7 @@ from robustness.natural_order import in_natural_order
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["Shown", "ShownOverTime", "labels_in_words"]
+__all__ = ["Shown", "ShownOverTime", "labels_in_words", "listed_in_words"]
 
 #: Larger networks are not drawn in notebooks unless asked for: a picture of them says little and takes long.
 _LARGEST = 80
@@ -34,7 +34,18 @@ def labels_in_words(labels: Iterable[object]) -> str:
     >>> labels_in_words({"n10", "n2"})
     "{'n2', 'n10'}"
     """
-    return "{" + ", ".join(map(repr, in_natural_order(labels))) + "}"
+    return listed_in_words(in_natural_order(labels))
+
+
+def listed_in_words(ordered: Sequence[object], most: int | None = None, spelled: Callable[[object], str] = repr) -> str:
+    """Return labels as the text of a set, in their order; of more than ``most`` the others are counted.
+
+    >>> listed_in_words(range(20), 3)
+    '{0, 1, 2, … 17 more}'
+    """
+    shown = ordered if most is None else ordered[:most]
+    more = f", … {len(ordered) - len(shown)} more" if len(shown) < len(ordered) else ""
+    return "{" + ", ".join(map(spelled, shown)) + more + "}"
 
 
 class Shown:

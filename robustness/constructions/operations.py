@@ -25,6 +25,7 @@ from robustness.decision.front import determine_robustness, is_rs_robust
 from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidGraph, InvalidParameter, Undecided
+from robustness.json_labels import from_json
 from robustness.results import Verdict
 
 if TYPE_CHECKING:
@@ -335,7 +336,7 @@ def carry_out(guarantee: Guarantee, premises: Iterable[Guaranteed]) -> Guarantee
     InvalidParameter
         When it does not give what the derivation says.
     """
-    parameters = {k: _as_label(v) if k == "node" else _from_json(v) for k, v in guarantee.parameters.items()}
+    parameters = {k: from_json(v) if k == "node" else _from_json(v) for k, v in guarantee.parameters.items()}
     try:
         again = OPERATIONS[guarantee.rule](*premises, **parameters)
     except TypeError:
@@ -423,8 +424,4 @@ def _to_json(value: Any) -> Any:
 
 def _from_json(value: Any) -> Any:
     """Return ``value`` with the lists inside a list as tuples: labels and arcs are tuples, collections lists."""
-    return [_as_label(part) for part in value] if isinstance(value, list) else value
-
-
-def _as_label(value: Any) -> Any:
-    return tuple(_as_label(part) for part in value) if isinstance(value, list) else value
+    return [from_json(part) for part in value] if isinstance(value, list) else value

@@ -18,6 +18,7 @@ import networkx as nx
 from robustness.digraph import Digraph
 from robustness.figures.placement import positions_in
 from robustness.files import topohub_names
+from robustness.json_labels import from_json
 
 __all__ = ["positions_of_file"]
 
@@ -30,7 +31,7 @@ def _node_link(text: str) -> Any:
     for place, node in enumerate(document["nodes"]):
         label = node.get("id", place)
         attributes = {str(key): value for key, value in node.items() if key != "id"}
-        network.add_node(tuple(label) if isinstance(label, list) else label, **attributes)
+        network.add_node(from_json(label), **attributes)
     return network
 
 

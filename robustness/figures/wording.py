@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from robustness.natural_order import in_natural_order
+from robustness.showing import listed_in_words
 
 __all__ = ["nodes_in_words", "plain"]
 
@@ -25,6 +26,4 @@ def nodes_in_words(labels: Iterable[object], most: int = 8) -> str:
     >>> nodes_in_words(["n10", "n2"]), nodes_in_words(range(20), 3)
     ('{n2, n10}', '{0, 1, 2, … 17 more}')
     """
-    ordered = in_natural_order(labels)
-    more = f", … {len(ordered) - most} more" if len(ordered) > most else ""
-    return "{" + ", ".join(plain(label) for label in ordered[:most]) + more + "}"
+    return listed_in_words(in_natural_order(labels), most, plain)

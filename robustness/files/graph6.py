@@ -63,8 +63,7 @@ def encode_digraph6(graph: Digraph) -> bytes:
 
     warn_of_lost_labels(graph, "digraph6")
     bits = np.zeros(-(-graph.n * graph.n // 6) * 6, dtype=np.int64)
-    heads = np.repeat(np.arange(graph.n), graph.in_degrees)
-    bits[graph.in_indices.astype(np.int64) * graph.n + heads] = 1
+    bits[graph.in_indices.astype(np.int64) * graph.n + graph.heads] = 1
     body = bits.reshape(-1, 6) @ np.array([32, 16, 8, 4, 2, 1]) + 63
     return b"&" + _encode_size(graph.n) + bytes(body.astype(np.uint8)) + b"\n"
 

@@ -184,5 +184,5 @@ def _graph_of(pattern: npt.NDArray[np.bool_], labels: list[str] | None = None) -
 def _matrix_of(graph: Digraph) -> npt.NDArray[np.uint8]:
     warn_of_lost_labels(graph, "an adjacency matrix")
     weights = np.zeros((graph.n, graph.n), dtype=np.uint8)
-    weights[graph.in_indices, np.repeat(np.arange(graph.n), graph.in_degrees)] = 1
+    weights[graph.in_indices, graph.heads] = 1
     return weights

@@ -168,7 +168,7 @@ class Edges:
             _require_at_least("most", self.most, self.least)
 
     def holds(self, graph: Digraph, limits: Limits = UNBOUNDED) -> bool:
-        """Count them."""
+        """Decide it by counting the edges (arcs)."""
         count = graph.arc_count if graph.directed else graph.arc_count // 2
         return self.least <= count and (self.most is None or count <= self.most)
 

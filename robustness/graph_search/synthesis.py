@@ -9,9 +9,7 @@ CP-SAT proposes.
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Sequence
-from concurrent.futures import Future, wait
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +25,7 @@ from robustness.graph_search.properties import Connected, HasTrap, Property, RSR
 from robustness.limits import UNBOUNDED, Limits, Progress
 from robustness.results import Verdict
 from robustness.traps.smallest import smallest_trap
+from robustness.waiting import in_a_thread
 
 if TYPE_CHECKING:
     from ortools.sat.python import cp_model
@@ -124,26 +123,9 @@ def _propose_until_it_fits(
 
 
 def _solve(solver: cp_model.CpSolver, model: cp_model.CpModel) -> cp_model.CpSolverStatus:
-    """Run the solver in a thread of its own, so that Ctrl-C reaches Python at once and then stops the solver."""
+    """Run the solver so that Ctrl-C reaches Python at once and then stops the solver."""
     solver.parameters.catch_sigint_signal = False
-    outcome: Future[cp_model.CpSolverStatus] = Future()
-
-    def work() -> None:
-        try:
-            outcome.set_result(solver.solve(model))
-        except Exception as problem:  # noqa: BLE001  # the waiting thread raises it
-            outcome.set_exception(problem)
-
-    worker = threading.Thread(target=work, name="robustness-graph-search", daemon=True)
-    worker.start()
-    try:
-        while not wait([outcome], timeout=0.1).done:
-            pass
-    except BaseException:
-        solver.stop_search()
-        worker.join()
-        raise
-    return outcome.result()
+    return in_a_thread("robustness-graph-search", lambda: solver.solve(model), solver.stop_search)
 
 
 def _learn(

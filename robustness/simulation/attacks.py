@@ -23,7 +23,8 @@ from certificates.graph import Label
 from robustness.definitions import is_violation, r_reachable_ids
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
-from robustness.showing import Shown
+from robustness.json_labels import from_json
+from robustness.showing import Shown, listed_in_words
 from robustness.simulation.adversaries import Adversary, Alternating, Constant
 from robustness.simulation.fault_models import fault_model_named, require_fault_model
 from robustness.simulation.outcome import Outcome
@@ -166,7 +167,7 @@ class Attack(Shown):
             raise InvalidParameter("an attack file has exactly the keys that 'attack' writes: write it anew")
         if document["graph"] != {"nodes": network.n, "arcs": network.arc_count, "sha256": network.sha256}:
             raise InvalidParameter("an attack is bound to its graph by SHA-256, but this is of another graph")
-        sets = {key: [_label(entry) for entry in document[key]] for key in ("malicious", "S1", "S2")}
+        sets = {key: [from_json(entry) for entry in document[key]] for key in ("malicious", "S1", "S2")}
         if document["kind"] == "violation":
             pair, who = (sets["S1"], sets["S2"]), sets["malicious"]
             made = attack_from_violation(network, document["f"], pair, malicious=who, model=document["model"])
@@ -304,10 +305,5 @@ def _require_bound(graph: Digraph, malicious: frozenset[int], f: int, model: str
     require_fault_model(graph, mask, f, fault_model_named(model))
 
 
-def _label(entry: Any) -> Any:
-    """Return a label read from JSON, where tuples are lists."""
-    return tuple(_label(part) for part in entry) if isinstance(entry, list) else entry
-
-
 def _text(labels: tuple[Label, ...]) -> str:
-    return "{" + ", ".join(map(repr, labels)) + "}"
+    return listed_in_words(labels)

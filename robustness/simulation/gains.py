@@ -117,8 +117,7 @@ def arc_weights(graph: Digraph, weights: str | Mapping[tuple[Hashable, Hashable]
     for (sender, receiver), weight in weights.items():
         (j,), (i,) = graph.ids([sender]), graph.ids([receiver])
         table[j, i] = float(weight)
-    heads = np.repeat(np.arange(graph.n), graph.in_degrees)
-    arcs = list(zip(graph.in_indices.tolist(), heads.tolist(), strict=True))
+    arcs = list(zip(graph.in_indices.tolist(), graph.heads.tolist(), strict=True))
     values = np.array([table.get(arc, np.nan) for arc in arcs])
     if not (np.isfinite(values).all() and (values > 0).all()) or len(table) != len(arcs):
         raise InvalidParameter("custom weights give every arc (j, i) of the graph a positive number, and no other pair")

@@ -29,7 +29,7 @@ _ROUNDING = 1e-9
 
 
 class Observer:
-    """Watches B runs.
+    """What is seen of B runs while they go on, beside their states.
 
     Safety: with gains inside the region the hull of all ``p`` and ``p + c q`` of normal vehicles never grows, see
     :mod:`robustness.gain_region` (whatever the filter keeps lies between values of normal vehicles). Before step 0

@@ -18,6 +18,7 @@ from typing import Any
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter, RobustnessError
 from robustness.files.writing import replace_file
+from robustness.json_labels import from_json
 from robustness.simulation import adversaries, motion, schedules
 from robustness.simulation.outcome import Outcome
 from robustness.simulation.scenario import Scenario, Start
@@ -121,7 +122,7 @@ def _decode(value: Any) -> Any:
     fields = dict(value)
     kind = fields.pop("kind")
     if kind == "Digraph":
-        labels = [_label(label) for label in fields["labels"]]
+        labels = [from_json(label) for label in fields["labels"]]
         return Digraph(labels, [(labels[u], labels[v]) for u, v in fields["arcs"]], directed=fields["directed"])
     if kind == "mapping":
         return {_decode(key): _decode(item) for key, item in fields["items"]}
@@ -132,7 +133,3 @@ def _decode(value: Any) -> Any:
     if kind not in _KINDS:
         raise InvalidParameter(f"a recorded run holds parts of this package, and {kind!r} is none")
     return _KINDS[kind](**{name: _decode(item) for name, item in fields.items()})
-
-
-def _label(entry: Any) -> Any:
-    return tuple(_label(part) for part in entry) if isinstance(entry, list) else entry

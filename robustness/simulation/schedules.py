@@ -93,11 +93,11 @@ class EveryStep:
 
     @property
     def gap(self) -> int:
-        """1."""
+        """The greatest number of steps between two updates: everybody updates at every step, so 1."""
         return 1
 
     def updates(self, view: View) -> Flags:
-        """Return ones."""
+        """Return that everybody updates at this step."""
         return np.ones((1, view.setting.graph.n), dtype=np.uint8)
 
 
@@ -124,7 +124,7 @@ class PeriodicUpdates:
 
     @property
     def gap(self) -> int:
-        """The period."""
+        """The greatest number of steps between two updates: the period."""
         return self.period
 
     def updates(self, view: View) -> Flags:
@@ -190,16 +190,16 @@ class NoDelays:
 
     @property
     def bound(self) -> int:
-        """0."""
+        """The greatest delay: values arrive at once, so 0."""
         return 0
 
     @property
     def adversarial(self) -> bool:
-        """False."""
+        """Whether the adversary may choose the delays: it may not."""
         return False
 
     def delays(self, view: View, past: Past) -> Steps:
-        """Return zeros."""
+        """Return that every arc delivers at once."""
         return np.zeros((1, view.setting.graph.arc_count), dtype=np.int64)
 
 
@@ -229,11 +229,11 @@ class ConstantDelays:
 
     @property
     def adversarial(self) -> bool:
-        """False."""
+        """Whether the adversary may choose the delays: it may not."""
         return False
 
     def delays(self, view: View, past: Past) -> Steps:
-        """Return the table."""
+        """Return the delay of every arc, the same at every step."""
         graph = view.setting.graph
         row = np.full(graph.arc_count, self.steps, dtype=np.int64)
         for (u, v), steps in self.arcs.items():
@@ -265,7 +265,7 @@ class PeriodicDelays:
 
     @property
     def adversarial(self) -> bool:
-        """False."""
+        """Whether the adversary may choose the delays: it may not."""
         return False
 
     def delays(self, view: View, past: Past) -> Steps:
@@ -285,7 +285,7 @@ class RandomDelays:
 
     @property
     def adversarial(self) -> bool:
-        """False."""
+        """Whether the adversary may choose the delays: it may not."""
         return False
 
     def delays(self, view: View, past: Past) -> Steps:
@@ -309,7 +309,7 @@ class AdversarialDelays:
 
     @property
     def adversarial(self) -> bool:
-        """True."""
+        """Whether the adversary may choose the delays: it may."""
         return True
 
     def delays(self, view: View, past: Past) -> Steps:
@@ -335,7 +335,7 @@ class LatestDelays:
 
     @property
     def adversarial(self) -> bool:
-        """True."""
+        """Whether the adversary may choose the delays: it may."""
         return True
 
     def delays(self, view: View, past: Past) -> Steps:
@@ -377,7 +377,7 @@ class Schedule:
 
     @property
     def oldest(self) -> int:
-        """Tau."""
+        """The bound tau: how old the values are at most that an update uses."""
         return self.update_times.gap - 1 + self.delay_rule.bound if self.tau is None else self.tau
 
     @property

@@ -66,7 +66,7 @@ class Board:
 
 def board_for(graph: Digraph, active: frozenset[int], *, byzantine: bool) -> Board:
     """Return the layout for these actively sensing nodes; single arcs get channels when ``byzantine``."""
-    heads = np.repeat(np.arange(graph.n), graph.in_degrees)
+    heads = graph.heads
     tails = graph.in_indices.astype(np.int64)
     sees = np.isin(heads, list(active))
     claims = 2 * graph.n + np.arange(graph.arc_count) if byzantine else tails

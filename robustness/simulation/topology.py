@@ -61,12 +61,8 @@ class Topology:
     def _present(self) -> npt.NDArray[np.uint8]:
         """Row g: which arcs of the union graph g has, as kernel status, shape ``(graphs, A)``."""
         table = self.union
-        heads = np.repeat(np.arange(table.n), table.in_degrees)
-        codes = heads * table.n + table.in_indices
-        rows = [
-            np.isin(codes, np.repeat(np.arange(g.n), g.in_degrees) * g.n + g.in_indices).astype(np.uint8)
-            for g in self.graphs
-        ]
+        codes = table.heads * table.n + table.in_indices
+        rows = [np.isin(codes, g.heads * g.n + g.in_indices).astype(np.uint8) for g in self.graphs]
         return np.stack(rows)
 
     def present(self, step: int) -> npt.NDArray[np.uint8]:

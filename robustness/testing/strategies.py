@@ -10,6 +10,7 @@ from collections.abc import Hashable, Iterable, Mapping
 from itertools import combinations, permutations
 from typing import TYPE_CHECKING, Literal
 
+from robustness.decision.bounds.degree import sufficient_degree
 from robustness.digraph import GraphLike, as_digraph
 from robustness.errors import InvalidParameter, MissingExtra
 from robustness.results import Witness
@@ -270,7 +271,7 @@ def _seed(draw: Draw, n: int, r: int, directed: bool) -> nx.Graph:
     import networkx as nx
 
     graph: nx.Graph = nx.complete_graph(n, create_using=nx.DiGraph if directed else nx.Graph)
-    spare = [max(n - 1 - (n // 2 + r - 1), 0) if r else n - 1] * n
+    spare = [max(n - 1 - sufficient_degree(n, r), 0) if r else n - 1] * n
     if not any(spare):
         return graph
     # What is drawn is what is taken away, so shrinking ends in the complete graph, the seed that is easiest to see.

@@ -16,6 +16,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from robustness.decision.bounds.degree import sufficient_degree
 from robustness.digraph import Digraph
 
 __all__ = ["Arcs", "Seed", "find_seed", "grow"]
@@ -60,7 +61,7 @@ class Seed:
     def proof(self, present: npt.NDArray[np.bool_], r: int) -> Literal["degree", "exhaustive"] | None:
         """Return what a certificate can say of the induced graph: the degree rule, or few enough nodes to try all."""
         size = len(self.members)
-        if self._induced(present[self.places]).in_degrees.min() >= size // 2 + r - 1:
+        if self._induced(present[self.places]).in_degrees.min() >= sufficient_degree(size, r):
             return "degree"
         return "exhaustive" if size <= _EXHAUSTIVE_NODES else None
 

@@ -298,8 +298,7 @@ def _arcs_of_step(graph: GraphLike, name: str, index: Mapping[Label, int]) -> tu
         graph = _digraph_of_step(graph, name)
     if isinstance(graph, Digraph):
         _require_same_nodes(set(graph.labels), name, index)
-        heads = np.repeat(np.arange(graph.n, dtype=np.int64), graph.in_degrees)
-        return heads * graph.n + graph.in_indices, graph.directed
+        return graph.heads * graph.n + graph.in_indices, graph.directed
     _require_same_nodes(set(graph), name, index)
     return _encode(graph.edges(), name, index, graph.is_directed()), graph.is_directed()
 

@@ -233,7 +233,7 @@ class _Luck:
         self._failures = self._wait = 0
 
     def tries(self) -> bool:
-        """Return whether it is time for another try; each No shortens the wait."""
+        """Return whether it is time for another try. Every call that says no counts as one step of the wait."""
         self._wait -= 1
         return self._wait < 0
 

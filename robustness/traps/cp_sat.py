@@ -17,17 +17,15 @@ is re-checked.
 
 from __future__ import annotations
 
-import threading
 from typing import Any
 
 from robustness.digraph import Digraph
 from robustness.errors import InternalError
 from robustness.limits import Limits
 from robustness.traps.question import Question, Sets, TrapAnswer
+from robustness.waiting import in_a_thread
 
 __all__ = ["decide", "solve_within"]
-
-_STEP = 0.1
 
 
 def decide(graph: Digraph, question: Question, limits: Limits) -> TrapAnswer:
@@ -85,8 +83,8 @@ def _variables(model: Any, graph: Digraph, question: Question) -> tuple[list[Any
 
 
 def solve_within(model: Any, limits: Limits) -> tuple[Any, Any]:
-    """Return the status and the solver. It runs in a thread that the caller waits for in short steps, so that Ctrl-C
-    is served and stops it. An exception of that thread is raised here; a status after a stopped call is never used.
+    """Return the status and the solver. Ctrl-C is served while it runs, and stops it. A crash of the solver is an
+    InternalError.
     """
     from ortools.sat.python import cp_model
 
@@ -96,24 +94,11 @@ def solve_within(model: Any, limits: Limits) -> tuple[Any, Any]:
     solver.parameters.catch_sigint_signal = False
     if limits.deadline is not None:
         solver.parameters.max_time_in_seconds = max(limits.seconds_left(), 1e-3)
-    outcome: list[Any] = []
-    problems: list[BaseException] = []
 
-    def work() -> None:
+    def work() -> Any:
         try:
-            outcome.append(solver.solve(model))
-        except BaseException as problem:  # noqa: BLE001 - handed to the caller, which raises it
-            problems.append(problem)
+            return solver.solve(model)
+        except Exception as problem:
+            raise InternalError(f"the solver failed: {problem}: please report") from problem
 
-    worker = threading.Thread(target=work, daemon=True)
-    worker.start()
-    try:
-        while worker.is_alive():
-            worker.join(_STEP)
-    except BaseException:
-        solver.stop_search()
-        worker.join()
-        raise
-    if problems:
-        raise InternalError(f"the solver failed: {problems[0]}: please report") from problems[0]
-    return outcome[0], solver
+    return in_a_thread("robustness-cp-sat", work, solver.stop_search), solver

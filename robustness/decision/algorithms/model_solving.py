@@ -9,9 +9,7 @@ is left to its time limit, or to the end of the process, which does not wait for
 from __future__ import annotations
 
 import math
-import threading
 import time
-from concurrent.futures import Future, wait
 from datetime import timedelta
 from typing import TYPE_CHECKING, Any
 
@@ -29,14 +27,13 @@ from robustness.errors import InternalError, Undecided
 from robustness.evidence import Exhausted, Pair
 from robustness.limits import Limits, Progress
 from robustness.results import Bound, Bounds, Witness
+from robustness.waiting import in_a_thread
 
 if TYPE_CHECKING:
     from ortools.math_opt.python import mathopt
 
 __all__ = ["decide", "largest_r", "largest_s", "verdict_of"]
 
-#: Seconds between two looks at the clock while a solver works.
-_STEP = 0.1
 #: Solvers look at their clock now and then only; past this many seconds their thread is left alone.
 _GRACE = 0.5
 #: Three years: what the solvers are told for longer limits, which would overflow them.
@@ -158,36 +155,22 @@ def _solve(model: mathopt.Model, solver: str, limits: Limits) -> mathopt.SolveRe
     kind = mathopt.SolverType[solver]
     parameters = _parameters(kind, limits)
     interrupter = SolveInterrupter() if kind is mathopt.SolverType.CP_SAT else None
-    outcome: Future[mathopt.SolveResult] = Future()
-
-    def work() -> None:
-        try:
-            outcome.set_result(mathopt.solve(model, kind, params=parameters, interrupter=interrupter))
-        except Exception as problem:  # noqa: BLE001  # the waiting thread raises it
-            outcome.set_exception(problem)
-
-    worker = threading.Thread(target=work, name=f"robustness-{solver.lower()}", daemon=True)
-    try:
-        worker.start()
-        _wait(outcome, solver, limits)
-    except BaseException:
-        if interrupter is not None:
-            interrupter.interrupt()
-            worker.join()
-        raise
-    problem = outcome.exception()
-    if problem is not None:
-        raise InternalError(f"{solver} failed ({problem}): please report, and use another algorithm") from problem
-    return outcome.result()
-
-
-def _wait(outcome: Future[Any], solver: str, limits: Limits) -> None:
     started = time.monotonic()
-    while not wait([outcome], timeout=_STEP).done:
+
+    def look() -> None:
         if limits.deadline is not None and time.monotonic() > limits.deadline + _GRACE:
             raise Undecided(f"the time limit was reached and {solver} did not stop: raise the limit")
         if limits.progress is not None:
             limits.progress(Progress(0, f"{solver} is at work, {time.monotonic() - started:.0f} s"))
+
+    def work() -> mathopt.SolveResult:
+        try:
+            return mathopt.solve(model, kind, params=parameters, interrupter=interrupter)
+        except Exception as problem:
+            raise InternalError(f"{solver} failed ({problem}): please report, and use another algorithm") from problem
+
+    stop = None if interrupter is None else interrupter.interrupt
+    return in_a_thread(f"robustness-{solver.lower()}", work, stop, look)
 
 
 def _parameters(kind: mathopt.SolverType, limits: Limits) -> mathopt.SolveParameters:

@@ -12,7 +12,12 @@ from __future__ import annotations
 from robustness.digraph import Digraph
 from robustness.results import Bound, Bounds
 
-__all__ = ["degree_bound", "robust_by_degree"]
+__all__ = ["degree_bound", "robust_by_degree", "sufficient_degree"]
+
+
+def sufficient_degree(n: int, r: int) -> int:
+    """Return the in-degree of the theorem, ``floor(n/2) + r - 1``."""
+    return n // 2 + r - 1
 
 
 def robust_by_degree(graph: Digraph, r: int) -> bool:
@@ -21,7 +26,7 @@ def robust_by_degree(graph: Digraph, r: int) -> bool:
     >>> robust_by_degree(Digraph(range(3), [(i, j) for i in range(3) for j in range(3) if i != j]), 2)
     True
     """
-    return graph.n >= 2 and int(graph.in_degrees.min()) >= graph.n // 2 + r - 1
+    return graph.n >= 2 and int(graph.in_degrees.min()) >= sufficient_degree(graph.n, r)
 
 
 def degree_bound(graph: Digraph) -> Bound:

@@ -172,8 +172,7 @@ def _outside(graph: Digraph, members: frozenset[int]) -> npt.NDArray[np.int64]:
     """Return how many in-neighbours outside ``members`` every node has; meaningful for its members."""
     outside = np.ones(graph.n, dtype=bool)
     outside[np.fromiter(members, np.int64, len(members))] = False
-    heads = np.repeat(np.arange(graph.n, dtype=np.int32), graph.in_degrees)
-    return np.bincount(heads[outside[graph.in_indices]], minlength=graph.n)[~outside]
+    return np.bincount(graph.heads[outside[graph.in_indices]], minlength=graph.n)[~outside]
 
 
 def _most_outside(graph: Digraph, pair: Pair) -> int:

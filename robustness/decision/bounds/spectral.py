@@ -76,7 +76,7 @@ def spectral_bound(graph: Digraph) -> Bound:
 def _mutual_laplacian(graph: Digraph) -> npt.NDArray[np.float64]:
     """Return the Laplacian of the links that run both ways, shape ``(n, n)``, integers held as floats."""
     adjacent = np.zeros((graph.n, graph.n))
-    adjacent[np.repeat(np.arange(graph.n), graph.in_degrees), graph.in_indices] = 1
+    adjacent[graph.heads, graph.in_indices] = 1
     adjacent *= adjacent.T
     laplacian: npt.NDArray[np.float64] = np.diag(adjacent.sum(axis=1)) - adjacent
     return laplacian

@@ -56,5 +56,4 @@ class Alternating:
 @lru_cache(maxsize=64)
 def _arcs_into(graph: Digraph, group: tuple[Hashable, ...]) -> Mask:
     """Return which arcs end in the group, shape ``(A,)``; asked at every step, so worked out once."""
-    heads = np.repeat(np.arange(graph.n), graph.in_degrees)
-    return np.isin(heads, list(graph.ids(group)))
+    return np.isin(graph.heads, list(graph.ids(group)))

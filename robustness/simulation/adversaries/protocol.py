@@ -67,7 +67,7 @@ class Setting:
     @cached_property
     def heads(self) -> npt.NDArray[np.int64]:
         """The receiver of every arc, shape ``(A,)``."""
-        return np.repeat(np.arange(self.graph.n), self.graph.in_degrees)
+        return self.graph.heads
 
     @cached_property
     def tails(self) -> npt.NDArray[np.int64]:
