@@ -53,8 +53,8 @@ FRONTS: dict[str, Callable[..., Any]] = {
     "certify_joint": lambda **effort: time_varying.certify_joint(SEQUENCE, 3, **effort),
     "joint_certificate": joint_certificate,
     "find_attack": lambda **effort: find_attack(GRAPH, 1, "delayed", **effort),
-    "mend": lambda **effort: rb.mend(nx.cycle_graph(5), 2, **effort),
-    "thin": lambda **effort: rb.thin(nx.complete_graph(5), 2, **effort),
+    "mend": lambda **effort: rb.mend(GRAPH, 3, **effort),
+    "thin": lambda **effort: rb.thin(GRAPH, 3, keep=list(GRAPH.edges), **effort),
     "find_graph": lambda **effort: rb.find_graph(19, satisfies=["2-robust"], method="cp-sat", **effort),
 }
 
