@@ -24,8 +24,9 @@ Fixpoint swapped (l found : list (nat * nat)) : list (nat * nat) :=
 Definition decode (b : bytes) : option graph :=
   match read_graph b with
   | Some (arcs, labels) =>
-    if labels_ok labels && arcs_ok (List.length labels) arcs && spelled b arcs labels
-    then Some (Graph (List.length labels) arcs (gather arcs) (gather (swapped arcs [])))
+    let n := length_of labels in
+    if labels_ok labels && arcs_ok n arcs && spelled b arcs labels
+    then Some (Graph n arcs (gather arcs) (gather (swapped arcs [])))
     else None
   | None => None
   end.
@@ -60,7 +61,7 @@ Definition prove (g : graph) (robust_claim : bool) (r s : nat) (v : json) (body 
   let heard := at_place (in_table g) in
   let hearers := at_place (out_table g) in
   let kind := match v with JObj members => field "kind" members | _ => JNull end in
-  let done name := Verified (Claim robust_claim r s name n (List.length (arc_list g))) in
+  let done name := Verified (Claim robust_claim r s name n (length_of (arc_list g))) in
   if robust_claim then
     if (n + 1) / 2 <? r then Rejected "no graph of this size is so robust: r is at most ceil(n/2) =" ((n + 1) / 2) else
     if is_text "growth" kind then
@@ -70,7 +71,7 @@ Definition prove (g : graph) (robust_claim : bool) (r s : nat) (v : json) (body 
         match ids n (field "seed" members), ids n (field "order" members), object_with ["kind"] (field "proof" members) with
         | Some seed, Some order, Some proof =>
           if grows n heard r s seed order then
-            match direct (List.length seed) (induced seed heard) (induced seed hearers) r s (field "kind" proof) body with
+            match direct (length_of seed) (induced seed heard) (induced seed hearers) r s (field "kind" proof) body with
             | None => done "growth"
             | Some other => other
             end
@@ -146,6 +147,7 @@ Lemma decode_describes : forall b g, decode b = Some g ->
   in_table g = gather (arc_list g).
 Proof.
   intros b g D. unfold decode in D. destruct (read_graph b) as [[arcs labels]|]; [|discriminate].
+  cbv zeta in D. rewrite length_of_is in D.
   destruct (_ && _) eqn:E in D; [|discriminate]. injection D as <-. simpl. apply andb_true_iff in E. destruct E as [E S].
   apply andb_true_iff in E. destruct E as [L A]. split; [|auto]. exists arcs, labels. split; [assumption|].
   split; [assumption|]. split; [apply spelled_sound; assumption|reflexivity].
@@ -199,14 +201,14 @@ Proof.
   destruct rc.
   - destruct (Nat.ltb_spec ((n + 1) / 2) r) as [|B]; [discriminate|].
     assert (ONE : n = 1 -> r <= 1) by (intros E; rewrite E in B; exact B).
-    enough (forall name, no_pair (seq 0 n) (hears G) r s -> Verified (Claim true r s name n (List.length arcs)) = Verified c -> holds G c) as DONE.
+    enough (forall name, no_pair (seq 0 n) (hears G) r s -> Verified (Claim true r s name n (length_of arcs)) = Verified c -> holds G c) as DONE.
     + destruct (is_text "growth" kind).
       * destruct (object_with growth_keys v) as [members|]; [|discriminate].
         destruct (ids n (field "seed" members)) as [seed|]; [|discriminate].
         destruct (ids n (field "order" members)) as [order|]; [|discriminate].
         destruct (object_with ["kind"] (field "proof" members)) as [proof|]; [|discriminate].
         destruct (grows n _ r s seed order) eqn:GR; [|destruct (ascending seed); discriminate].
-        destruct (direct _ _ _ r s _ body) eqn:D; [subst; apply direct_proves_nothing_else in D; contradiction|].
+        rewrite (length_of_is _ seed) in P. destruct (direct _ _ _ r s _ body) eqn:D; [subst; apply direct_proves_nothing_else in D; contradiction|].
         apply (DONE "growth"); [|assumption]. destruct (grows_seed _ _ _ _ _ _ GR) as [SN SB].
         eapply grows_sound; try eassumption. eapply direct_sound; try eassumption.
         -- apply induced_range.

@@ -5,8 +5,12 @@ Import ListNotations.
 
 Definition length_of {A} (l : list A) : nat := tally (fun _ => true) l 0.
 
-Lemma length_of_is : forall l : list nat, length_of l = length l.
-Proof. intros. unfold length_of. rewrite tally_cnt. apply (cnt_true l). reflexivity. Qed.
+Lemma length_of_is : forall A (l : list A), length_of l = length l.
+Proof.
+  assert (forall A (l : list A) k, tally (fun _ => true) l k = k + length l) as H.
+  { induction l as [|v l IH]; intros k; simpl; [lia|]. rewrite IH. lia. }
+  intros. unfold length_of. rewrite H. reflexivity.
+Qed.
 
 (* [heard i]: the nodes that i hears, each once. *)
 Definition lists (n : nat) (h : nat -> nat -> bool) (heard : nat -> list nat) : Prop :=
