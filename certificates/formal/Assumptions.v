@@ -1,6 +1,7 @@
 (* What the theorems rest on: nothing but Coq. *)
-From Formal Require Import Certificate Lemmas Traps Examples.
+From Formal Require Import Certificate Unique Lemmas Traps Examples.
 Print Assumptions verify_sound.
+Print Assumptions describes_one.
 Print Assumptions lemma_1_i.
 Print Assumptions lemma_1_ii.
 Print Assumptions lemma_1_last.
