@@ -4,6 +4,7 @@ Print Assumptions verify_sound.
 Print Assumptions describes_one.
 Print Assumptions lemma_1_i.
 Print Assumptions lemma_1_ii.
+Print Assumptions weaken.
 Print Assumptions lemma_1_last.
 Print Assumptions lemma_1_v.
 Print Assumptions lemma_1_v_complete.

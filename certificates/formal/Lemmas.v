@@ -109,14 +109,25 @@ Proof.
     replace (Datatypes.S (r - 1)) with r by lia. apply robust_no_pair. assumption.
 Qed.
 
+(* (i) and (ii) together: what a claim implies, by which `verify` answers a question. *)
+Lemma trade : forall k G r t, 1 <= t -> 1 <= r -> robust G (r + k) t -> robust G r (t + k).
+Proof.
+  induction k as [|k IH]; intros G r t T R RO; [rewrite Nat.add_0_r in *; assumption|].
+  replace (t + S k) with ((t + 1) + k) by lia. apply IH; [lia|assumption|].
+  replace (r + k) with (r + S k - 1) by lia. apply lemma_1_ii; [lia|assumption|assumption].
+Qed.
+Theorem weaken : forall G r s r' s', 1 <= s -> r' <= r -> s' <= s + r - r' -> robust G r s -> robust G r' s'.
+Proof.
+  intros G r s r' s' S R B RO. destruct r' as [|r'].
+  - split; [lia|]. intros S1 S2 _ _ _. left. intros i _. unfold reachable. apply andb_true_r.
+  - apply (lemma_1_i G (Datatypes.S r') (s + (r - Datatypes.S r'))); [lia|lia|]. apply trade; [assumption|lia|].
+    replace (Datatypes.S r' + (r - Datatypes.S r')) with r by lia. assumption.
+Qed.
+
 (* Lemma 1, last line. *)
 Theorem lemma_1_last : forall s G r, 1 <= s -> 1 <= r -> robust G (r + s - 1) 1 -> robust G r s.
 Proof.
-  assert (H : forall k G r t, 1 <= t -> 1 <= r -> robust G (r + k) t -> robust G r (t + k)).
-  { induction k as [|k IH]; intros G r t T R RO; [rewrite Nat.add_0_r in *; assumption|].
-    replace (t + S k) with ((t + 1) + k) by lia. apply IH; [lia|assumption|].
-    replace (r + k) with (r + S k - 1) by lia. apply lemma_1_ii; [lia|assumption|assumption]. }
-  intros s G r S R RO. replace s with (1 + (s - 1)) by lia. apply H; [lia|assumption|].
+  intros s G r S R RO. replace s with (1 + (s - 1)) by lia. apply trade; [lia|assumption|].
   replace (r + (s - 1)) with (r + s - 1) by lia. assumption.
 Qed.
 
