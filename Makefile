@@ -28,7 +28,7 @@ DEMO_R := 5
 DEMO_CERTIFICATE := $(BUILD)/demo/di-yuan-$(DEMO_R)-robust.cert
 DEMO_CANONICAL := $(BUILD)/demo/di-yuan.graph
 
-.PHONY: help demo venv test test-slow lint types docs coverage-kernel bench bench-quick wheel lock clean
+.PHONY: help demo venv test test-slow lint types docs coverage-kernel formal bench bench-quick wheel lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */\1\t/' | expand -t 18
@@ -64,6 +64,23 @@ test-slow: $(READY) ## the exhaustive sweeps
 
 coverage-kernel: $(READY) ## every branch of the trusted kernel is taken by its own tests
 	$(BIN)/python -m pytest -q tests/certificates --cov=certificates --cov-fail-under=100 --cov-report=term-missing
+
+# The Coq proofs in their order, the statement of what they rest on, and the checker that Coq makes of them.
+FORMAL := $(BUILD)/formal
+PROOFS := Counting Bytes Robustness Sets Rules Soundness Refutation RefutationSound Tables Evidence Checks Growth Canonical \
+	Reading Certificate Unique Lemmas Traps Examples Assumptions Extract
+
+$(FORMAL)/robustness-verified: $(wildcard certificates/formal/*)
+	@command -v coqc >/dev/null && command -v ocamlopt >/dev/null || \
+		{ echo "Coq 8.16 and OCaml 4.13 are needed: apt-get install coq ocaml-nox" >&2; exit 3; }
+	rm -rf $(FORMAL) && mkdir -p $(FORMAL) && cp certificates/formal/*.v certificates/formal/main.ml $(FORMAL)
+	cd $(FORMAL) && for proof in $(PROOFS); do coqc -q -Q . Formal $$proof.v >$$proof.out || exit 1; done
+	@cat $(FORMAL)/Assumptions.out
+	@! grep -v "^Closed under the global context$$" $(FORMAL)/Assumptions.out >&2
+	cd $(FORMAL) && ocamlopt -inline 200 -w -a checker.mli checker.ml main.ml -o building && mv building robustness-verified
+
+formal: $(FORMAL)/robustness-verified ## the checker that is proved correct (needs Coq and OCaml)
+	@echo "the verified checker: $(FORMAL)/robustness-verified"
 
 lint: $(READY) ## ruff: rules, docstrings and format; spelling
 	$(BIN)/ruff check .

@@ -34,6 +34,13 @@ SCHEMA = "robustness/verify/1"
 @click.option("--window", type=int, metavar="L", help="The number of steps that a joint claim must be about.")
 @click.option("-f", "f", type=int, help="The number of malicious nodes that the claim must be about, or imply.")
 @click.option("--model", type=click.Choice(tuple(FACES)), help="With -f: the threat model that it must be about.")
+@click.option(
+    "--checker",
+    type=click.Choice(["python", "verified"]),
+    default="python",
+    show_default=True,
+    help="verified: the checker that is proved correct, which 'make formal' builds; for certificates of robustness.",
+)
 @json_option
 @speaking
 def command(
@@ -47,6 +54,7 @@ def command(
     window: int | None,
     f: int | None,
     model: str | None,
+    checker: str,
     as_json: bool,
 ) -> None:
     """Verify CERTIFICATE, of any kind, for GRAPH and compare the claim that it proves with the question asked.
@@ -68,12 +76,13 @@ def command(
         data = read_at_most(certificate, MAX_CERTIFICATE_BYTES)
     except OSError as problem:
         raise UnreadableTopology(f"{certificate}: cannot be read: {problem.strerror}") from None
-    claim = _verified(source, data)
+    claim = _verified(source, data) if checker == "python" else _verified_formally(source, data)
     answers, how = comparison(claim, question)
     if as_json:
-        console.document(SCHEMA, _document(claim) | {"as_asked": answers, "comparison": how})
+        console.document(SCHEMA, _document(claim) | {"as_asked": answers, "comparison": how, "checker": checker})
     elif answers:
-        console.result(f"verified: {claim}; {how}")
+        by = "; by the checker that is proved correct" if checker == "verified" else ""
+        console.result(f"verified: {claim}; {how}{by}")
     if not answers:
         console.error(f"rejected: {how}; proved is that {claim}")
         ctx.exit(ExitCode.REFUTED)
@@ -88,6 +97,19 @@ def _verified(source: str, certificate: bytes) -> Claim:
     if format_of(certificate) == JOINT_FORMAT:
         return verify_any(_sequence_bytes(source), certificate)
     return verify_any(load_graph(source).canonical_bytes(), certificate)
+
+
+def _verified_formally(source: str, certificate: bytes) -> Claim:
+    """Return what the checker that is proved correct says that the certificate proves about the graph."""
+    from .verified import NAME, CheckerUnavailable, find_checker, verify_with
+
+    found = find_checker()
+    if found is None:
+        raise click.UsageError(f"no {NAME} on the PATH: 'make formal' builds it where Coq and OCaml are installed.")
+    try:
+        return verify_with(found, load_graph(source).canonical_bytes(), certificate)
+    except CheckerUnavailable as problem:
+        raise click.ClickException(str(problem)) from None
 
 
 def _sequence_bytes(source: str) -> bytes:

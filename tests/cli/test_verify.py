@@ -104,6 +104,7 @@ def test_json_key_by_key(r: int, code: int, robust: Path) -> None:
         "comparison": "the claim is the one asked for"
         if code == 0
         else "the claim proved is not the one asked for (r 3)",
+        "checker": "python",
     }
 
 

@@ -1,0 +1,155 @@
+(* Files in, an exit code out: the command line of `python -m certificates verify` around the extracted checker.
+   Trusted beside it: reading files, SHA-256, the comparison with the question asked, and what is printed. *)
+
+let fail code message = prerr_endline message; exit code
+
+let usage problem =
+  fail 2 ("usage: robustness-verified verify [--expect {robust,not-robust}] [-r R] [-s S] graph certificate\n"
+          ^ "robustness-verified verify: error: " ^ problem)
+
+(* The file's bytes, or somewhat more than [limit] of them. *)
+let read_at_most limit path =
+  try
+    let channel = open_in_bin path in
+    let data = Buffer.create 65536 and block = Bytes.create 65536 in
+    let rec go () =
+      let got = input channel block 0 65536 in
+      if got > 0 then (Buffer.add_subbytes data block 0 got; if Buffer.length data <= limit then go ()) in
+    go ();
+    close_in channel;
+    Buffer.contents data
+  with Sys_error problem -> fail 3 ("error: cannot read " ^ problem)
+
+let sha256 text =
+  let k = [|
+    0x428a2f98; 0x71374491; 0xb5c0fbcf; 0xe9b5dba5; 0x3956c25b; 0x59f111f1; 0x923f82a4; 0xab1c5ed5;
+    0xd807aa98; 0x12835b01; 0x243185be; 0x550c7dc3; 0x72be5d74; 0x80deb1fe; 0x9bdc06a7; 0xc19bf174;
+    0xe49b69c1; 0xefbe4786; 0x0fc19dc6; 0x240ca1cc; 0x2de92c6f; 0x4a7484aa; 0x5cb0a9dc; 0x76f988da;
+    0x983e5152; 0xa831c66d; 0xb00327c8; 0xbf597fc7; 0xc6e00bf3; 0xd5a79147; 0x06ca6351; 0x14292967;
+    0x27b70a85; 0x2e1b2138; 0x4d2c6dfc; 0x53380d13; 0x650a7354; 0x766a0abb; 0x81c2c92e; 0x92722c85;
+    0xa2bfe8a1; 0xa81a664b; 0xc24b8b70; 0xc76c51a3; 0xd192e819; 0xd6990624; 0xf40e3585; 0x106aa070;
+    0x19a4c116; 0x1e376c08; 0x2748774c; 0x34b0bcb5; 0x391c0cb3; 0x4ed8aa4a; 0x5b9cca4f; 0x682e6ff3;
+    0x748f82ee; 0x78a5636f; 0x84c87814; 0x8cc70208; 0x90befffa; 0xa4506ceb; 0xbef9a3f7; 0xc67178f2 |] in
+  let state = [| 0x6a09e667; 0xbb67ae85; 0x3c6ef372; 0xa54ff53a; 0x510e527f; 0x9b05688c; 0x1f83d9ab; 0x5be0cd19 |] in
+  let low x = x land 0xffffffff in
+  let turn x by = low ((x lsr by) lor (x lsl (32 - by))) in
+  let length = String.length text in
+  let blocks = (length + 8) / 64 + 1 in
+  let byte i =
+    if i < length then Char.code text.[i]
+    else if i = length then 0x80
+    else if i >= 64 * blocks - 8 then ((8 * length) lsr (8 * (64 * blocks - 1 - i))) land 255
+    else 0 in
+  let w = Array.make 64 0 in
+  for block = 0 to blocks - 1 do
+    for t = 0 to 15 do
+      let at = 64 * block + 4 * t in
+      w.(t) <- (byte at lsl 24) lor (byte (at + 1) lsl 16) lor (byte (at + 2) lsl 8) lor byte (at + 3)
+    done;
+    for t = 16 to 63 do
+      let x = w.(t - 15) and y = w.(t - 2) in
+      let s0 = turn x 7 lxor turn x 18 lxor (x lsr 3) and s1 = turn y 17 lxor turn y 19 lxor (y lsr 10) in
+      w.(t) <- low (w.(t - 16) + s0 + w.(t - 7) + s1)
+    done;
+    let v = Array.copy state in
+    for t = 0 to 63 do
+      let a = v.(0) and e = v.(4) in
+      let s1 = turn e 6 lxor turn e 11 lxor turn e 25 and s0 = turn a 2 lxor turn a 13 lxor turn a 22 in
+      let ch = (e land v.(5)) lxor (low (lnot e) land v.(6)) in
+      let maj = (a land v.(1)) lxor (a land v.(2)) lxor (v.(1) land v.(2)) in
+      let t1 = low (v.(7) + s1 + ch + k.(t) + w.(t)) in
+      for i = 7 downto 1 do v.(i) <- v.(i - 1) done;
+      v.(4) <- low (v.(4) + t1);
+      v.(0) <- low (t1 + s0 + maj)
+    done;
+    Array.iteri (fun i x -> state.(i) <- low (x + v.(i))) state
+  done;
+  String.concat "" (Array.to_list (Array.map (Printf.sprintf "%08x") state))
+
+let bytes_of text = { Checker.len = String.length text; byte_at = (fun i -> Char.code text.[i]) }
+
+(* The machine's integers are what Extract.v takes them for. *)
+let () =
+  let slow word = List.length (List.filter (fun k -> (word lsr k) land 1 = 1) (List.init 62 Fun.id)) in
+  let rec try_words k word =
+    if k > 0 then begin
+      if Checker.w_pop word <> slow word then fail 1 "internal error: words are counted wrongly";
+      try_words (k - 1) (((word * 0x2545F4914F6CDD1D) lxor (word lsr 7)) land max_int)
+    end in
+  if Sys.int_size <> 63 then fail 1 "internal error: the checker needs a machine of 64 bits";
+  try_words 100 max_int
+
+(* Does the claim answer the question: is it what was asked, or does it imply that (Lemma 1 (i) and (ii))? *)
+let comparison (c : Checker.claim) verdict r s =
+  let own = if c.is_robust then "robust" else "not-robust" in
+  let wrong =
+    (match verdict with Some v when v <> own -> [ "verdict " ^ v ] | _ -> [])
+    @ (match r with Some r when r <> c.of_r -> [ "r " ^ string_of_int r ] | _ -> [])
+    @ (match s with Some s when s <> c.of_s -> [ "s " ^ string_of_int s ] | _ -> []) in
+  let list = String.concat ", " wrong in
+  if verdict = None && r = None && s = None then
+    (true, "compared with no question: state one to have the claim compared with it")
+  else if wrong = [] then (true, "the claim is the one asked for")
+  else
+    let implied =
+      match (verdict, r) with
+      | Some v, Some r when v = own ->
+        let s = Option.value s ~default:1 in
+        r >= 0 && s >= 1
+        && if c.is_robust then r <= c.of_r && s <= c.of_s + c.of_r - r else c.of_r <= r && c.of_s <= s + r - c.of_r
+      | _ -> false in
+    if implied then (true, "the claim implies the one asked for (" ^ list ^ ")")
+    else (false, "the claim proved is not the one asked for (" ^ list ^ ")")
+
+let answer graph certificate =
+  let digest = sha256 graph in
+  let codes = List.map Char.code (List.of_seq (String.to_seq digest)) in
+  (digest, Checker.verify codes (bytes_of graph) (bytes_of certificate))
+
+(* For tests of many certificates: pairs of lengths on a line, then the bytes of graph and certificate; a line each. *)
+let rec stream () =
+  match input_line stdin with
+  | exception End_of_file -> ()
+  | line ->
+    Scanf.sscanf line "%d %d" (fun n m ->
+        let graph = really_input_string stdin n in
+        let certificate = really_input_string stdin m in
+        (match snd (answer graph certificate) with
+         | Checker.Verified c -> Printf.printf "0 %b %d %d\n%!" c.is_robust c.of_r c.of_s
+         | Checker.Malformed _ -> print_string "3\n"; flush stdout
+         | Checker.Rejected _ -> print_string "10\n"; flush stdout));
+    stream ()
+
+let run graph certificate verdict r s =
+  let graph = read_at_most (1 lsl 28) graph in
+  let certificate = read_at_most (1 lsl 30) certificate in
+  let digest, outcome = answer graph certificate in
+  match outcome with
+  | Checker.Malformed why -> fail 3 ("malformed: " ^ why)
+  | Checker.Rejected (why, place) -> fail 10 ("rejected: " ^ why ^ if place = 0 then "" else Printf.sprintf " %d" place)
+  | Checker.Verified c ->
+    let claim =
+      Printf.sprintf "the graph with %d nodes, %d arcs and SHA-256 %s %s (%d,%d)-robust (evidence: %s)" c.of_nodes c.of_arcs
+        digest (if c.is_robust then "is" else "is not") c.of_r c.of_s c.evidence in
+    let answers, how = comparison c verdict r s in
+    if answers then print_endline ("verified: " ^ claim ^ "; " ^ how)
+    else fail 10 ("rejected: " ^ how ^ "; proved is that " ^ claim)
+
+let () =
+  let number text = match int_of_string_opt text with Some k -> Some k | None -> usage ("invalid int value: '" ^ text ^ "'") in
+  let rec options files verdict r s = function
+    | "--expect" :: (("robust" | "not-robust") as v) :: rest -> options files (Some v) r s rest
+    | "-r" :: k :: rest -> options files verdict (number k) s rest
+    | "-s" :: k :: rest -> options files verdict r (number k) rest
+    | option :: _ when String.length option > 1 && option.[0] = '-' -> usage ("unrecognized or incomplete: " ^ option)
+    | file :: rest -> options (file :: files) verdict r s rest
+    | [] -> (
+      match files with
+      | [ certificate; graph ] -> (
+        try run graph certificate verdict r s with
+        | Stack_overflow | Out_of_memory -> fail 1 "internal error: out of memory")
+      | _ -> usage "a graph and a certificate are needed") in
+  match Array.to_list Sys.argv with
+  | _ :: "verify" :: rest -> options [] None None None rest
+  | [ _; "stream" ] -> set_binary_mode_in stdin true; stream ()
+  | _ -> usage "the command is verify"

@@ -1,0 +1,167 @@
+"""The checker that is proved correct agrees with the Python kernel; its theorem is printed as it stands, and closed."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from itertools import islice
+from pathlib import Path
+
+import networkx as nx
+import pytest
+from click.testing import CliRunner
+
+from cli.main import robustness
+from cli.verified import find_checker
+from robustness import Digraph
+from tests.certificates.differential import Stream, by_the_kernel, cases, differs
+from tests.certificates.forging import certificate, searched
+from tests.certificates.make_samples import HERE
+
+ROOT = Path(__file__).parents[2]
+FORMAL = ROOT / "certificates" / "formal"
+SAMPLES = sorted(path for folder in ("accepted", "rejected", "malformed") for path in (HERE / folder).glob("*.cert"))
+WHEEL = Digraph.from_networkx(nx.wheel_graph(5))
+
+
+@pytest.fixture(scope="module")
+def checker() -> Path:
+    found = find_checker()
+    if found is None:
+        pytest.skip(
+            "the checker that is proved correct is not built, so not compared: apt-get install coq; make formal"
+        )
+    return found
+
+
+def run(checker: Path, *arguments: object) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([checker, *map(str, arguments)], capture_output=True, text=True, check=False)
+
+
+def test_every_committed_sample(checker: Path) -> None:
+    """The same exit code, but for derivations, which it does not know and calls malformed."""
+    codes = {"accepted": 0, "rejected": 10, "malformed": 3}
+    for path in SAMPLES:
+        expected = 3 if path.stem.startswith("derivation") else codes[path.parent.name]
+        outcome = run(checker, "verify", path.with_suffix(".graph"), path)
+        assert outcome.returncode == expected, (path, outcome)
+        assert outcome.stderr.count("\n") == (expected != 0)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_generated_certificates_and_mutants(seed: int, checker: Path) -> None:
+    """``python -m tests.certificates.differential --count 100000`` compares as many as you like."""
+    accepted = 0
+    with Stream(checker) as stream:
+        for case in islice(cases(seed), 300):
+            assert differs(stream, case) is None
+            accepted += by_the_kernel(*case[1:])[0] == 0
+    assert 50 < accepted < 250
+
+
+def test_long_input_does_not_exhaust_the_stack(checker: Path, tmp_path: Path) -> None:
+    """A stack of 128 KB is enough for lists of 20,000 nodes and for what follows a proof: nothing recurses on them."""
+    n = 20_000
+    path = Digraph.from_networkx(nx.path_graph(n))
+    halves = {"kind": "violation", "S1": list(range(n // 2)), "S2": list(range(n // 2, n))}
+    grown = {"kind": "growth", "seed": [0, 1], "order": list(range(2, n)), "proof": {"kind": "degree"}}
+    long = searched(WHEEL, 2, 1) + bytes(10**7)
+    for graph, data, code in (
+        (path, certificate(path, 2, 1, "not-robust", halves), 0),
+        (path, certificate(path, 1, 1, evidence=grown), 0),
+        (WHEEL, certificate(WHEEL, 2, 1, body=long), 10),
+    ):
+        (tmp_path / "graph").write_bytes(graph.canonical_bytes())
+        (tmp_path / "cert").write_bytes(data)
+        command = [
+            "bash",
+            "-c",
+            'ulimit -s 128; exec "$@"',
+            "-",
+            checker,
+            "verify",
+            tmp_path / "graph",
+            tmp_path / "cert",
+        ]
+        assert subprocess.run(command, capture_output=True, check=False).returncode == code
+
+
+def test_the_question_is_compared_as_the_kernel_compares_it(checker: Path, tmp_path: Path) -> None:
+    (tmp_path / "graph").write_bytes(WHEEL.canonical_bytes())
+    (tmp_path / "cert").write_bytes(certificate(WHEEL, 2, 2, body=searched(WHEEL, 2, 2)))
+    from certificates.__main__ import main
+
+    for question in (
+        [], ["--expect", "robust"], ["--expect", "not-robust"], ["-r", "2"], ["-r", "3"], ["-s", "1"], ["-s", "3"],
+        ["--expect", "robust", "-r", "1", "-s", "3"], ["--expect", "robust", "-r", "1", "-s", "4"],
+    ):  # fmt: skip
+        paths = [str(tmp_path / "graph"), str(tmp_path / "cert")]
+        assert run(checker, "verify", *paths, *question).returncode == main(["verify", *paths, *question]), question
+    assert run(checker, "verify", tmp_path / "graph").returncode == 2
+    assert run(checker, "verify", tmp_path / "graph", tmp_path / "none").returncode == 3
+
+
+def test_robustness_verify_uses_it(checker: Path, tmp_path: Path) -> None:
+    (tmp_path / "wheel.json").write_bytes(WHEEL.canonical_bytes())
+    good, bad = tmp_path / "good.cert", tmp_path / "bad.cert"
+    good.write_bytes(certificate(WHEEL, 2, 2, body=searched(WHEEL, 2, 2)))
+    bad.write_bytes(certificate(WHEEL, 2, 2, body=searched(WHEEL, 2, 2)[:-1]))
+    arguments = ["verify", str(tmp_path / "wheel.json"), "--checker", "verified"]
+    outcome = CliRunner().invoke(robustness, [*arguments, str(good), "-r", "2"])
+    assert outcome.exit_code == 0, outcome.output
+    assert "by the checker that is proved correct" in outcome.stdout
+    assert CliRunner().invoke(robustness, [*arguments, str(good), "-r", "3"]).exit_code == 10
+    assert CliRunner().invoke(robustness, [*arguments, str(bad)]).exit_code == 10
+
+
+def test_the_proofs_are_closed(checker: Path) -> None:
+    """``Print Assumptions`` of every theorem answers that nothing is assumed; ``make formal`` keeps the answer."""
+    asked = len(re.findall(r"^Print Assumptions", (FORMAL / "Assumptions.v").read_text(), re.MULTILINE))
+    built = ROOT / "build" / "formal" / "Assumptions.out"
+    if not built.is_file() or built.stat().st_mtime < max(path.stat().st_mtime for path in FORMAL.iterdir()):
+        pytest.skip("the checker was not built from these sources in this checkout: make formal")
+    assert built.read_text() == "Closed under the global context\n" * asked
+
+
+def test_no_axiom_and_nothing_admitted() -> None:
+    for path in FORMAL.glob("*.v"):
+        assert not re.search(r"\b(Admitted|admit|Axiom|Parameter|Conjecture)\b", path.read_text()), path
+
+
+def test_make_builds_every_proof() -> None:
+    listed = re.search(r"^PROOFS := (.*?)\n\n", (ROOT / "Makefile").read_text(), re.DOTALL | re.MULTILINE)
+    assert listed is not None
+    assert set(listed[1].replace("\\", "").split()) == {path.stem for path in FORMAL.glob("*.v")}
+
+
+def test_without_the_checker_the_command_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr("cli.verified.find_checker", lambda: None)
+    (tmp_path / "c.cert").write_bytes(certificate(WHEEL, 2, 2, body=searched(WHEEL, 2, 2)))
+    (tmp_path / "wheel.json").write_bytes(WHEEL.canonical_bytes())
+    paths = [str(tmp_path / "wheel.json"), str(tmp_path / "c.cert")]
+    outcome = CliRunner().invoke(robustness, ["verify", *paths, "--checker", "verified"])
+    assert outcome.exit_code == 2
+    assert "make formal" in outcome.stderr
+
+
+@pytest.mark.parametrize("page", ["formal.md", "trust.md"])
+def test_the_statement_on_the_page_is_the_one_in_the_source(page: str) -> None:
+    """Every block of Coq on the page stands in a source file, word for word."""
+    blocks = re.findall(r"^```text\n(.*?)^```", (ROOT / "docs" / page).read_text(), re.DOTALL | re.MULTILINE)
+    sources = [path.read_text() for path in FORMAL.glob("*.v")]
+    parts = [
+        part
+        for block in blocks
+        for part in re.split(r"\n\n", block.strip())
+        if "Definition" in part or "Theorem" in part
+    ]
+    assert len(parts) >= (10 if page == "formal.md" else 1)
+    for part in parts:
+        assert any(part in source for source in sources), part
+
+
+def test_every_theorem_on_the_page_is_asked_what_it_assumes() -> None:
+    asked = set(re.findall(r"^Print Assumptions (\w+)\.", (FORMAL / "Assumptions.v").read_text(), re.MULTILINE))
+    named = {name for row in re.findall(r"^\| (`.*?) \|", (ROOT / "docs" / "formal.md").read_text(), re.MULTILINE)
+             for name in re.findall(r"`(\w+)`", row)}  # fmt: skip
+    assert asked - {"verify_sound"} == named
