@@ -21,10 +21,10 @@ import robustness as rb
 from robustness.definitions import is_violation
 from robustness.limits import Limits
 from robustness.mending.actions import actions_for
-from robustness.mending.engine import with_actions
+from robustness.mending.demands import Side, Unit, masks_of, units
 from robustness.mending.goal import Part
+from robustness.mending.hitting_set import with_actions
 from robustness.mending.master import Master
-from robustness.mending.rows import Side, Unit, masks_of, units
 
 
 def all_pairs(graph: rb.Digraph, r: int, s: int) -> tuple[int | None, float]:

@@ -18,7 +18,8 @@ from hypothesis import strategies as st
 
 import robustness as rb
 from robustness import ALGORITHMS, Digraph, Verdict
-from robustness.decision.algorithms import OPTIONS, Answer, transform
+from robustness.answers import Answer
+from robustness.decision.algorithms import OPTIONS, transform
 from robustness.limits import Limits
 from tests.oracles import brute_profile, digraphs, graphs, is_violating, labelled_digraphs
 

@@ -6,7 +6,6 @@ import io
 import json
 import os
 import stat
-import time
 import warnings
 from pathlib import Path
 
@@ -355,13 +354,11 @@ class TestTopohub:
         topohub_names.list_names.cache_clear()
 
 
-def test_a_hundred_thousand_nodes_take_seconds() -> None:
+def test_a_hundred_thousand_nodes() -> None:
     n = 100_000
     tails = np.random.default_rng(0).integers(0, n, 5 * n).tolist()
     arcs = [(str(u), str(i // 5)) for i, u in enumerate(tails) if u != i // 5]
     lines = "\n".join(f"{u} {v}" for u, v in arcs)
-    started = time.process_time()
     graph = decode_quietly(f"# directed\n{lines}".encode(), ".edgelist")
-    assert time.process_time() - started < 10  # about two seconds; the rest is for slow machines
     assert graph.n == n
     assert graph.arc_count == len(set(arcs))

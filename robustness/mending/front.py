@@ -10,10 +10,10 @@ from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.limits import Limits, Progress
 from robustness.mending.actions import Actions, CostLike, Link, actions_for
-from robustness.mending.engine import Search, with_actions
+from robustness.mending.demands import sets_of
 from robustness.mending.goal import Goal, Part, goals_of, parts_of
+from robustness.mending.hitting_set import Search, with_actions
 from robustness.mending.results import Demand, MendResult, MendVerdict
-from robustness.mending.rows import sets_of
 from robustness.natural_order import natural_key
 from robustness.traps.question import Sets
 
@@ -75,8 +75,8 @@ def mend(
     Notes
     -----
     Adding links never destroys (r,s)-robustness, nor makes a trap or a violation, so every violation of a choice is one
-    of every smaller choice (:mod:`robustness.mending.rows`). An implicit hitting set
-    (:mod:`robustness.mending.engine`) finds as many of them as the optimum needs. Exponential in the worst case.
+    of every smaller choice (:mod:`robustness.mending.demands`). An implicit hitting set
+    (:mod:`robustness.mending.hitting_set`) finds as many of them as the optimum needs. Exponential in the worst case.
 
     >>> import networkx as nx
     >>> found = mend(nx.path_graph(4), (2, 2))

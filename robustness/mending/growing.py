@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from robustness.mending.demands import Side, bits, holds_apart, worth
 from robustness.mending.goal import Part
-from robustness.mending.rows import Side, bits, holds_apart, worth
 
 __all__ = ["every_pair", "grown_sides", "shrunk"]
 

@@ -30,7 +30,7 @@ from typing import Any, NamedTuple
 from robustness.digraph import Digraph
 from robustness.limits import Limits
 from robustness.mending.actions import Actions
-from robustness.mending.rows import Side, Unit, masks_of, units, unlocalizers
+from robustness.mending.demands import Side, Unit, masks_of, units, unlocalizers
 from robustness.traps.cp_sat import solve_within
 
 __all__ = ["Master", "Proposal"]

@@ -151,7 +151,7 @@ def survey(
     >>> import networkx as nx
     >>> rows = survey({"wheel": nx.wheel_graph(5), "complete": nx.complete_graph(7)}, models=["delayed"])
     >>> [(row.network, row.r, row.guaranteed["delayed"]) for row in rows]
-    [('wheel', 2, 0), ('complete', 4, 1)]
+    [('wheel', 2, 0), ('complete', 4, 2)]
     """
     if type(jobs) is not int or jobs < 1:
         raise InvalidParameter(f"jobs is an integer of at least 1, not {jobs!r}")

@@ -17,11 +17,22 @@ from robustness.digraph import Digraph
 from robustness.errors import Undecided
 from robustness.limits import Limits, Progress
 from robustness.mending.actions import Actions
+from robustness.mending.demands import (
+    Side,
+    Unit,
+    bits,
+    fit,
+    holds_apart,
+    masks_of,
+    sides_of,
+    units,
+    unlocalizers,
+    worth,
+)
 from robustness.mending.goal import Part
 from robustness.mending.growing import every_pair, grown_sides, shrunk
 from robustness.mending.master import Master
 from robustness.mending.oracle import first_violation
-from robustness.mending.rows import Side, Unit, bits, fit, holds_apart, masks_of, sides_of, units, unlocalizers, worth
 from robustness.traps.question import Sets
 
 __all__ = ["Search", "with_actions"]
