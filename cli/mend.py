@@ -9,46 +9,40 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .mending import answer, goal_options, goals_from, links_in, tell
+from .mending import FILE, Kept, answer, goal_and_files, links_in, tell
 from .options import graph_argument, load_graph
 from .output import Console
 from .query import Query, query_options
 
 if TYPE_CHECKING:
     from robustness.digraph import Digraph
+    from robustness.mending import Goal
 
 __all__ = ["SCHEMA", "command"]
 
 SCHEMA = "robustness/mend/1"
 
-_FILE = click.Path(dir_okay=False, path_type=Path)
-
 
 @click.command("mend")
 @graph_argument
-@goal_options
-@click.option("--candidates", type=_FILE, metavar="FILE", help="A network whose links can be added; all unless given.")
+@goal_and_files
+@click.option("--candidates", type=FILE, metavar="FILE", help="A network whose links can be added; all unless given.")
 @click.option("--range", "reach", type=float, metavar="X", help="Links can be added between nodes X apart at most.")
 @click.option(
     "--cost", type=click.Choice(("one", "distance")), default="one", show_default=True, help="What a link costs."
 )
-@click.option("--forbid", type=_FILE, metavar="FILE", help="A network whose links may not be added.")
-@click.option("--require", "required", type=_FILE, metavar="FILE", help="A network whose links have to be added.")
+@click.option("--forbid", type=FILE, metavar="FILE", help="A network whose links may not be added.")
+@click.option("--require", "required", type=FILE, metavar="FILE", help="A network whose links have to be added.")
 @click.option("--max-in-degree", type=click.IntRange(min=0), metavar="D", help="No node that gains links hears more.")
 @click.option("--one-way", is_flag=True, help="Add single arcs, also to an undirected network.")
-@click.option("-o", "--output", type=_FILE, metavar="FILE", help="Write the mended network.")
-@click.option("--certificate", type=_FILE, metavar="FILE", help="Write a certificate that it reaches the goal.")
-@click.option("--plot", "picture", type=_FILE, metavar="FILE", help="Draw it, new links thick: .svg, .png or .pdf.")
 @query_options()
 def command(
     ctx: click.Context,
     console: Console,
     query: Query,
     source: str,
-    r: int | None,
-    s: int | None,
-    survive: int | None,
-    model: str | None,
+    goals: tuple[Goal, ...],
+    kept: Kept,
     candidates: Path | None,
     reach: float | None,
     cost: str,
@@ -56,9 +50,6 @@ def command(
     required: Path | None,
     max_in_degree: int | None,
     one_way: bool,
-    output: Path | None,
-    certificate: Path | None,
-    picture: Path | None,
 ) -> None:
     """Which links make GRAPH robust, at least cost?
 
@@ -70,10 +61,9 @@ def command(
     from robustness.mending import MendResult, mend
     from robustness.mending.front import links_within
 
-    goals = goals_from(r, s, survive, model)
     if candidates is not None and reach is not None:
         raise click.UsageError("give one of --candidates and --range.")
-    require_different_files([source, candidates, forbid, required], [output, certificate, picture])
+    require_different_files([source, candidates, forbid, required], kept.paths)
     graph = load_graph(source)
     places = _positions(source, graph) if reach is not None or cost == "distance" else {}
     wanted = links_in(candidates, graph) if reach is None else links_within(places, reach)
@@ -95,10 +85,7 @@ def command(
         )
 
     found, is_interrupted = answer(console, query, work)
-    tell(
-        ctx, console, query, SCHEMA, found,
-        is_interrupted=is_interrupted, output=output, certificate=certificate, picture=picture,
-    )  # fmt: skip
+    tell(ctx, console, query, SCHEMA, found, is_interrupted=is_interrupted, kept=kept)
 
 
 def _positions(source: str, graph: Digraph) -> dict[Any, tuple[float, float]]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +22,10 @@ if TYPE_CHECKING:
     from robustness.digraph import Digraph
     from robustness.mending import Goal, MendResult
 
-__all__ = ["answer", "goal_options", "goals_from", "links_in", "tell"]
+__all__ = ["FILE", "Kept", "answer", "goal_and_files", "goals_from", "links_in", "tell"]
+
+#: A file that is read or written whole.
+FILE = click.Path(dir_okay=False, path_type=Path)
 
 _GOAL_OPTIONS = (
     click.option("-r", "r", type=click.IntRange(min=0), help="The goal: (R,S)-robust."),
@@ -34,11 +39,51 @@ _GOAL_OPTIONS = (
 )
 
 
-def goal_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the options that name a goal."""
-    for option in reversed(_GOAL_OPTIONS):
-        command = option(command)
-    return command
+_KEEP_OPTIONS = (
+    click.option("-o", "--output", type=FILE, metavar="FILE", help="Write the network with its new set of links."),
+    click.option("--certificate", type=FILE, metavar="FILE", help="Write a certificate that it reaches the goal."),
+    click.option("--plot", "picture", type=FILE, metavar="FILE", help="Draw it, new links thick: .svg, .png or .pdf."),
+)
+
+#: r* and s are told for networks of up to so many nodes: within a second.
+_FEW_NODES = 20
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """Where what is found is written; None where it is not."""
+
+    output: Path | None
+    certificate: Path | None
+    picture: Path | None
+
+    @property
+    def paths(self) -> list[Path | None]:
+        """All three."""
+        return [self.output, self.certificate, self.picture]
+
+
+def goal_and_files(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options that name a goal and the files to write; the command gets ``goals`` and ``kept``."""
+
+    @wraps(command)
+    def with_goal(
+        *arguments: Any,
+        r: int | None,
+        s: int | None,
+        survive: int | None,
+        model: str | None,
+        output: Path | None,
+        certificate: Path | None,
+        picture: Path | None,
+        **own: Any,
+    ) -> Any:
+        goals = goals_from(r, s, survive, model)
+        return command(*arguments, goals=goals, kept=Kept(output, certificate, picture), **own)
+
+    for option in reversed((*_GOAL_OPTIONS, *_KEEP_OPTIONS)):
+        with_goal = option(with_goal)
+    return with_goal
 
 
 def goals_from(r: int | None, s: int | None, survive: int | None, model: str | None) -> tuple[Goal, ...]:
@@ -93,18 +138,16 @@ def tell(
     found: MendResult | None,
     *,
     is_interrupted: bool,
-    output: Path | None,
-    certificate: Path | None,
-    picture: Path | None,
+    kept: Kept,
 ) -> None:
     """Print an answer, write what was asked for, and end with the exit code that it deserves."""
     if found is None:
         console.error("interrupted: nothing is claimed" if is_interrupted else "undecided: nothing was found in time")
         ctx.exit(ExitCode.INTERRUPTED if is_interrupted else ExitCode.UNDECIDED)
-    after = _facts(found.graph, query) if found.cost is not None else None
-    before = _facts(found.before, query)
+    after = _facts(found.graph) if found.cost is not None else None
+    before = _facts(found.before)
     if found.cost is not None:
-        _keep(console, query, found, output, certificate, picture)
+        _keep(console, query, found, kept)
     if query.as_json:
         facts = {"graph": graph_document(found.before), **found.as_dict(), "before": before, "after": after}
         console.document(schema, facts)
@@ -117,17 +160,15 @@ def tell(
     ctx.exit(codes.get(found.verdict.value, ExitCode.UNDECIDED))
 
 
-def _facts(graph: Digraph, query: Query) -> dict[str, Any]:
-    """Return r* and s before or after, as far as a share of the limit shows."""
+def _facts(graph: Digraph) -> dict[str, Any]:
+    """Return how many links there are, and on few nodes r* and s; on more they can take longer than the answer did."""
     from robustness.decision.front import determine_robustness
 
-    known = determine_robustness(graph, time_limit=query.timeout, seed=query.seed, s_time_limit=query.timeout)
-    r_at_most = known.r if known.bounds is None else known.bounds.upper.value
-    return {"r": known.r, "r_at_most": r_at_most, "s": known.s, "links": _count(graph)}
-
-
-def _count(graph: Digraph) -> int:
-    return graph.arc_count if graph.directed else graph.arc_count // 2
+    links = graph.arc_count if graph.directed else graph.arc_count // 2
+    if graph.n > _FEW_NODES:
+        return {"links": links, "r": None, "s": None}
+    known = determine_robustness(graph)
+    return {"links": links, "r": known.r, "s": known.s}
 
 
 def _lines(found: MendResult, before: dict[str, Any], after: dict[str, Any] | None) -> list[str]:
@@ -147,8 +188,8 @@ def _lines(found: MendResult, before: dict[str, Any], after: dict[str, Any] | No
         lines.append(f"stopped: {found.reason}")
     for name, facts in (("before", before), ("after", after)):
         if facts is not None:
-            r = facts["r"] if facts["r"] == facts["r_at_most"] else f"{facts['r']}..{facts['r_at_most']}"
-            lines.append(f"{name:<7} {facts['links']} links, r* = {r}, s = {facts['s']}")
+            known = "" if facts["r"] is None else f", r* = {facts['r']}, s = {facts['s']}"
+            lines.append(f"{name:<7} {facts['links']} links{known}")
     return lines
 
 
@@ -156,28 +197,26 @@ def _keep(
     console: Console,
     query: Query,
     found: MendResult,
-    output: Path | None,
-    certificate: Path | None,
-    picture: Path | None,
+    kept: Kept,
 ) -> None:
     """Write the mended network, a certificate of its goal, and a picture."""
     from robustness.files import replace_file, write_topology
 
-    if output is not None:
-        write_topology(found.graph, output)
-        console.talk(f"wrote {output}")
-    if certificate is not None:
+    if kept.output is not None:
+        write_topology(found.graph, kept.output)
+        console.talk(f"wrote {kept.output}")
+    if kept.certificate is not None:
         data = _certificate(found, query)
         if data is None:
             console.talk("no certificate: a limit was reached, or the kernel has no evidence of this kind")
         else:
-            replace_file(certificate, data)
-            console.talk(f"wrote {certificate} ({len(data):,} bytes, verified)")
-    if picture is not None:
+            replace_file(kept.certificate, data)
+            console.talk(f"wrote {kept.certificate} ({len(data):,} bytes, verified)")
+    if kept.picture is not None:
         from robustness.figures.network import draw_to_file
 
-        draw_to_file(found.graph, found, picture)
-        console.talk(f"wrote {picture}")
+        draw_to_file(found.graph, found, kept.picture)
+        console.talk(f"wrote {kept.picture}")
 
 
 def _certificate(found: MendResult, query: Query) -> bytes | None:

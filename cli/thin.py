@@ -3,43 +3,36 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from .mending import answer, goal_options, goals_from, links_in, tell
+from .mending import FILE, Kept, answer, goal_and_files, links_in, tell
 from .options import graph_argument, load_graph
 from .output import Console
 from .query import Query, query_options
+
+if TYPE_CHECKING:
+    from robustness.mending import Goal
 
 __all__ = ["SCHEMA", "command"]
 
 SCHEMA = "robustness/thin/1"
 
-_FILE = click.Path(dir_okay=False, path_type=Path)
-
 
 @click.command("thin")
 @graph_argument
-@goal_options
-@click.option("--keep", type=_FILE, metavar="FILE", help="A network whose links may not go.")
-@click.option("-o", "--output", type=_FILE, metavar="FILE", help="Write the thinned network.")
-@click.option("--certificate", type=_FILE, metavar="FILE", help="Write a certificate that it still reaches the goal.")
-@click.option("--plot", "picture", type=_FILE, metavar="FILE", help="Draw what stays: .svg, .png or .pdf.")
+@goal_and_files
+@click.option("--keep", type=FILE, metavar="FILE", help="A network whose links may not go.")
 @query_options()
 def command(
     ctx: click.Context,
     console: Console,
     query: Query,
     source: str,
-    r: int | None,
-    s: int | None,
-    survive: int | None,
-    model: str | None,
+    goals: tuple[Goal, ...],
+    kept: Kept,
     keep: Path | None,
-    output: Path | None,
-    certificate: Path | None,
-    picture: Path | None,
 ) -> None:
     """How many links of GRAPH can go while it keeps what is asked of it?
 
@@ -49,16 +42,12 @@ def command(
     from robustness.files.writing import require_different_files
     from robustness.mending import MendResult, thin
 
-    goals = goals_from(r, s, survive, model)
-    require_different_files([source, keep], [output, certificate, picture])
+    require_different_files([source, keep], kept.paths)
     graph = load_graph(source)
-    kept = links_in(keep, graph) or []
+    stay = links_in(keep, graph) or []
 
     def work(line: Any, improved: Any) -> MendResult:
-        return thin(graph, goals, keep=kept, on_improvement=improved, **query.effort(line))
+        return thin(graph, goals, keep=stay, on_improvement=improved, **query.effort(line))
 
     found, is_interrupted = answer(console, query, work)
-    tell(
-        ctx, console, query, SCHEMA, found,
-        is_interrupted=is_interrupted, output=output, certificate=certificate, picture=picture,
-    )  # fmt: skip
+    tell(ctx, console, query, SCHEMA, found, is_interrupted=is_interrupted, kept=kept)

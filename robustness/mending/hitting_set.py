@@ -43,6 +43,9 @@ _ORDERS = 3
 #: Pairs of grown sides are added all together up to so many, beyond that only those that a proposal leaves open.
 _MOST_PAIRS = 300
 
+#: The solver's units of effort for the first bound: about a second.
+_FIRST_EFFORT = 1.0
+
 #: On so few nodes every violation of (r,s)-robustness is a demand from the start: faster than to solve again and again.
 _FEW = 8
 
@@ -112,6 +115,8 @@ class Search:
                 if part.trap is None and self.graph.n <= _FEW:
                     for pair in every_pair(self._base, part):
                         self._learn(*pair)
+            # A bound before the first repair, which can take long; counted, so that it is the same on every machine.
+            self.bound = self._master.solve(self.limits.share(0.5), None, _FIRST_EFFORT).bound or 0
             self._improve(self._repair(self.actions.required, 0))
             turn = 1
             while not self.is_optimal and not self.is_impossible:
@@ -191,6 +196,7 @@ class Search:
         while True:
             pair = self._open_pair(chosen)
             if pair is None:
+                self._improve(frozenset(chosen))
                 return self._reduced(frozenset(chosen), rng)
             if not self._break(pair, chosen, rng):
                 return None
@@ -277,7 +283,9 @@ class Search:
                 order.sort(key=lambda a: -self.actions.items[a].cost)
             for a in order:
                 kept.discard(a)
-                if self._open_pair(kept) is not None:
+                if self._open_pair(kept) is None:
+                    self._improve(frozenset(kept))
+                else:
                     kept.add(a)
             if best is None or self.cost(kept) < self.cost(best):
                 best = frozenset(kept)

@@ -89,15 +89,15 @@ class Master:
         else:
             self._model.add(sum(worths) + s * freed >= s)
 
-    def solve(self, limits: Limits, hint: frozenset[int] | None) -> Proposal:
-        """Return the cheapest choice, as far as the limits allow."""
+    def solve(self, limits: Limits, hint: frozenset[int] | None, effort: float | None = None) -> Proposal:
+        """Return the cheapest choice, as far as the limits, and the solver's units of effort, allow."""
         from ortools.sat.python import cp_model
 
         self._model.clear_hints()  # type: ignore[no-untyped-call]
         if hint is not None:
             for a, x in enumerate(self._x):
                 self._model.add_hint(x, a in hint)
-        status, solver = solve_within(self._model, limits)
+        status, solver = solve_within(self._model, limits, effort)
         if status == cp_model.INFEASIBLE:
             return Proposal(None, None, is_optimal=False)
         bound = max(0, math.ceil(solver.best_objective_bound - 1e-6))

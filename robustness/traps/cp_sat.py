@@ -82,9 +82,10 @@ def _variables(model: Any, graph: Digraph, question: Question) -> tuple[list[Any
     return normal, inside, malicious
 
 
-def solve_within(model: Any, limits: Limits) -> tuple[Any, Any]:
+def solve_within(model: Any, limits: Limits, effort: float | None = None) -> tuple[Any, Any]:
     """Return the status and the solver. Ctrl-C is served while it runs, and stops it. A crash of the solver is an
-    InternalError.
+    InternalError. ``effort`` bounds the work in the solver's own units, which are counted and not timed, and puts it
+    into the linear relaxation: a bound soon, for large models, rather than a solution.
     """
     from ortools.sat.python import cp_model
 
@@ -94,6 +95,9 @@ def solve_within(model: Any, limits: Limits) -> tuple[Any, Any]:
     solver.parameters.catch_sigint_signal = False
     if limits.deadline is not None:
         solver.parameters.max_time_in_seconds = max(limits.seconds_left(), 1e-3)
+    if effort is not None:
+        solver.parameters.max_deterministic_time = effort
+        solver.parameters.linearization_level = 2
 
     def work() -> Any:
         try:

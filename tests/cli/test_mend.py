@@ -72,6 +72,7 @@ def test_a_limit_is_undecided_and_says_what_holds(tmp_path: Path) -> None:
     done = run("mend", tmp_path / "long.json", "-r", 3, "--timeout", 2)
     assert done.exit_code == ExitCode.UNDECIDED
     assert "at least" in done.stdout
+    assert "r* =" not in done.stdout  # on so many nodes it can take longer than the limit
 
 
 def test_candidates_forbidden_required_and_range(platoon: Path, tmp_path: Path) -> None:
