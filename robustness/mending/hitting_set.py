@@ -117,6 +117,7 @@ class Search:
                         self._learn(*pair)
             # A bound before the first repair, which can take long; counted, so that it is the same on every machine.
             self.bound = self._master.solve(self.limits.share(0.5), None, _FIRST_EFFORT).bound or 0
+            self._tell()
             self._improve(self._repair(self.actions.required, 0))
             turn = 1
             while not self.is_optimal and not self.is_impossible:
@@ -203,6 +204,8 @@ class Search:
 
     def _open_pair(self, chosen: Iterable[int]) -> Pair | None:
         """Return a demand that the choice does not meet: a known one, else the oracle's; None when all are met."""
+        if self.limits.expired():
+            raise Undecided("the limit came during a repair")
         heard = self._heard(chosen)
         for pair in self.rows:
             if holds_apart(*pair, heard):
