@@ -16,6 +16,7 @@ from networkx.generators.atlas import graph_atlas_g
 import robustness as rb
 from robustness.answers import Answer, Question
 from robustness.decision.algorithms import exhaustive
+from robustness.decision.algorithms.transform import largest_s
 from robustness.decision.bounds import all_bounds, bounds, settle
 from robustness.decision.bounds.cuts import closed_pair, degree_pair, separating_pair
 from robustness.decision.bounds.degree import degree_bound, robust_by_degree
@@ -23,8 +24,8 @@ from robustness.decision.bounds.growth import find_growth, growth_order
 from robustness.decision.bounds.spectral import is_positive_definite, prove_lambda_2_above, spectral_evidence
 from robustness.decision.front import robustness_profile
 from robustness.definitions import half_split, is_violation
-from robustness.evidence import DegreeRule, Growth, Spectral
-from robustness.limits import Limits
+from robustness.evidence import DegreeRule, Growth, Pair, Spectral
+from robustness.limits import Limits, Steps
 from robustness.results import Verdict
 
 DEFINED = Limits()
@@ -147,6 +148,22 @@ class TestAgainstTheTruth:
                 if growth is not None:
                     require_growth(graph, growth, r, s)
                     assert profile[r] >= s
+
+    def test_a_seed_that_an_old_pair_refutes_is_not_examined_again(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        examined: list[int] = []
+
+        def note(graph: Digraph, r: int, limits: Limits) -> tuple[int, Pair | None]:
+            examined.append(graph.n)
+            return largest_s(graph, r, limits)
+
+        monkeypatch.setattr("robustness.decision.bounds.growth.largest_s", note)
+        # From each of 20 anchors the seeds have 9, 10, ... 16 nodes and none is robust.
+        assert find_growth(digraph(nx.random_regular_graph(9, 20, seed=1)), 5, 5) is None
+        assert 0 < len(examined) < 3 * 20
+
+    def test_a_spent_budget_examines_nothing(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr("robustness.decision.bounds.growth.largest_s", None)
+        assert find_growth(digraph(nx.random_regular_graph(9, 20, seed=1)), 5, 5, steps=Steps(20_000_000)) is None
 
     @settings(max_examples=40, deadline=None)
     @given(st.integers(7, 12), st.sampled_from([0.3, 0.5, 0.7, 0.9]), st.integers(0, 2**32 - 1), st.booleans())

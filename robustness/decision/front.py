@@ -80,7 +80,7 @@ def check_rs_robustness(
     s : int
         In 1..n.
     algorithm : str
-        A name in ``ALGORITHMS``, or ``"auto"``: ``transform`` on up to 18 nodes; cheap bounds and then
+        A name in ``ALGORITHMS``, or ``"auto"``: ``transform`` on up to 20 nodes; cheap bounds and then
         ``subset-search`` on all others. What decided is recorded in the result.
     time_limit : float, optional
         Wall-clock seconds; past it the verdict is UNDECIDED.

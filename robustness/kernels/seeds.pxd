@@ -6,13 +6,15 @@ cdef number EXHAUSTIVE_NODES, _NO_PAIR
 @cython.locals(i=number)
 cpdef bint by_degree(word[::1] hears, number size, number r)
 
-@cython.locals(
-    everyone=number, ones=cython.uchar[::1], cost=cython.uchar[::1], least=cython.uchar[::1], members=number,
-    reachable=number, i=number, best=number)
-cpdef number least_exempt(word[::1] hears, number size, number r)
+@cython.locals(outside=number, members=number, exempt=number, i=number)
+cdef number _exempt(word[::1] hears, number size, number r, number side)
+
+@cython.locals(last=number, k=number, first=number, second=number)
+cdef bint _violated_again(word[::1] hears, number size, number r, number s, long long[::1] pair)
 
 @cython.locals(i=number)
-cdef bint _proven(word[::1] hears, number size, number r, number s)
+cdef bint _proven(
+    word[::1] hears, number size, number r, number s, long long[::1] pair, object examine) except *
 
 @cython.locals(bits=word, k=number, j=number, q=number)
 cdef (number, word) _join(
@@ -23,9 +25,9 @@ cdef (number, word) _join(
 cdef number _most_linked(int[::1] seed, number size, int[::1] links, int[::1] met, number known)
 
 @cython.locals(
-    links=int[::1], met=int[::1], hears=word[::1], tried=number, fresh=number, size=number, known=number, found=bint,
-    heard_by=word, q=number, k=number, degree=number)
+    links=int[::1], met=int[::1], hears=word[::1], pair=cython.longlong[::1], tried=number, fresh=number, size=number,
+    known=number, found=bint, heard_by=word, q=number, k=number, degree=number)
 cpdef find_seed(
     const long long[::1] in_indptr, const int[::1] in_indices, const long long[::1] out_indptr,
     const int[::1] out_indices, int[::1] anchors, unsigned char[::1] barred, number r, number s, number limit,
-    number work, int[::1] seed)
+    number work, int[::1] seed, object examine)

@@ -12,10 +12,11 @@ except ImportError:
 if not cython.compiled:
     from robustness.kernels.words import bit_of, count
 
-__all__ = ["by_degree", "find_seed", "least_exempt"]
+__all__ = ["by_degree", "find_seed"]
 
 # Seeds up to this size are examined subset by subset; larger ones must satisfy the degree rule.
 EXHAUSTIVE_NODES = 16
+# More than any number of exempt nodes: a side whose nodes are all reachable from outside makes no violating pair.
 _NO_PAIR = 255
 
 
@@ -30,46 +31,43 @@ def by_degree(hears, size, r):
     return True
 
 
-def least_exempt(hears, size, r):
-    """Return the least ``|X_S1| + |X_S2|`` over pairs in which neither side is fully reachable, or 255 without any.
-
-    The graph on ``size <= 16`` nodes is (r,s)-robust exactly when this is at least s. With c(S) = ``|X_S|``, or 255
-    when X_S = S, and M(T) the least c over nonempty subsets of T, it is the least c(S) + M(V \\ S).
-    """
-    everyone = (1 << size) - 1
-    ones = np.zeros(1 << size, np.uint8)
-    for members in range(1, 1 << size):
-        ones[members] = ones[members >> 1] + (members & 1)
-    cost = np.empty(1 << size, np.uint8)
-    cost[0] = _NO_PAIR
-    for members in range(1, 1 << size):
-        reachable = 0
-        for i in range(size):
-            if members >> i & 1:
-                reachable += ones[hears[i] & (everyone ^ members)] >= r
-        cost[members] = _NO_PAIR if reachable == ones[members] else reachable
-    least = np.array(cost)
+def _exempt(hears, size, r, side):
+    """Return ``|X_S|`` of the nodes S in ``side`` within a seed of at most 16, or 255 when X_S = S."""
+    outside = ((1 << size) - 1) ^ side
+    members, exempt = 0, 0
     for i in range(size):
-        for members in range(1 << size):
-            if members >> i & 1 and least[members ^ (1 << i)] < least[members]:
-                least[members] = least[members ^ (1 << i)]
-    best = _NO_PAIR
-    for members in range(1, everyone):
-        if cost[members] < _NO_PAIR and least[everyone ^ members] < _NO_PAIR:
-            best = min(best, int(cost[members]) + int(least[everyone ^ members]))
-    return best
+        if side >> i & 1:
+            members += 1
+            exempt += count(hears[i] & outside) >= r
+    return _NO_PAIR if exempt == members else exempt
 
 
-def _proven(hears, size, r, s):
-    """Return whether the seed is (r,s)-robust by the degree rule or, when it is small, by all its subsets."""
+def _violated_again(hears, size, r, s, pair):
+    """Return whether the pair that refuted the seed without its last node, or with it on either side, refutes it.
+
+    Nothing but the definition: what it finds is a violating pair, which is left in ``pair``. Most seeds that are not
+    robust are refuted by what refuted them one node ago, in linear time.
+    """
+    last = 1 << (size - 1)
+    for k in range(3):
+        first, second = pair[0] | (last if k == 1 else 0), pair[1] | (last if k == 2 else 0)
+        if _exempt(hears, size, r, first) + _exempt(hears, size, r, second) < s:
+            pair[0], pair[1] = first, second
+            return True
+    return False
+
+
+def _proven(hears, size, r, s, pair, examine):
+    """Return whether the seed is (r,s)-robust by the degree rule or, when it is small, by ``examine``."""
     if by_degree(hears, size, r):
         return True
-    if size > EXHAUSTIVE_NODES:
+    if size > EXHAUSTIVE_NODES or (pair[0] and _violated_again(hears, size, r, s, pair)):
         return False
+    pair[0] = pair[1] = 0
     for i in range(size):
         if count(hears[i]) < r:
             return False
-    return least_exempt(hears, size, r) >= s
+    return examine(hears, size, pair)
 
 
 def _join(indptr, indices, seed, size, links, met, known):
@@ -100,22 +98,27 @@ def _most_linked(seed, size, links, met, known):
     return best
 
 
-def find_seed(in_indptr, in_indices, out_indptr, out_indices, anchors, barred, r, s, limit, work, seed):
+def find_seed(in_indptr, in_indices, out_indptr, out_indices, anchors, barred, r, s, limit, work, seed, examine):
     """Grow dense sets around the anchors until one is provably (r,s)-robust; return (anchors tried, its size or 0).
 
     From an anchor the node with most arcs to and from the set joins, up to ``limit`` <= 64 nodes; as soon as the set is
     large enough for others to hear r + s - 1 of it, its robustness is examined at each size. Anchors in ``barred``
     are passed over. About ``work`` elementary steps are spent per call. The ids are left in ``seed[:size]``.
+
+    ``examine(hears, size, pair)`` says whether a seed of at most 16 nodes is proven robust by all its subsets; when it
+    is refuted, ``examine`` leaves the violating pair in ``pair``, two sets of nodes of the seed as bits.
     """
     links = np.zeros(len(barred), np.int32)
     met = np.empty(len(barred), np.int32)
     hears = np.zeros(64, np.uint64)
+    pair = np.zeros(2, np.int64)
     for tried in range(len(anchors)):
         if work <= 0:
             return tried, 0
         if barred[anchors[tried]]:
             continue
         fresh, size, known, found = anchors[tried], 0, 0, False
+        pair[0] = pair[1] = 0
         while size < limit and fresh >= 0 and not found:
             seed[size] = fresh
             known, heard_by = _join(in_indptr, in_indices, seed, size, links, met, known)
@@ -127,8 +130,7 @@ def find_seed(in_indptr, in_indices, out_indptr, out_indices, anchors, barred, r
             size += 1
             work -= degree * size + known
             if size >= max(2 * r - 1, r + s - 1):
-                found = _proven(hears, size, r, s)
-                work -= size << min(size, EXHAUSTIVE_NODES)
+                found = _proven(hears, size, r, s, pair, examine)
             fresh = _most_linked(seed, size, links, met, known)
         for k in range(known):
             links[met[k]] = 0

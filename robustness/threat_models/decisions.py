@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from robustness.answers import Answer
+from robustness.answers import Question as RobustnessQuestion
 from robustness.decision.front import check_within
+from robustness.decision.ladder import settle_quickly
 from robustness.definitions import r_reachable_ids
 from robustness.digraph import Digraph
 from robustness.limits import Limits
@@ -38,6 +41,7 @@ class Decisions:
     limits: Limits
     _robust: dict[tuple[int, int], RobustnessResult] = field(default_factory=dict)
     _attacks: dict[Question, Finding] = field(default_factory=dict)
+    _settled: dict[tuple[int, int], Answer | None] = field(default_factory=dict)
 
     def robust(self, r: int, s: int = 1, share: float = 1.0) -> RobustnessResult:
         """Return the result of :func:`check_rs_robustness`, from memory where it is known."""
@@ -57,7 +61,7 @@ class Decisions:
         """Return what lemmas alone tell about the question, or None."""
         known = self._attacks.get(question) or self._implied(question)
         if known is None:
-            settled = settle_trap(self.graph, question, self.limits.share(0.1))
+            settled = settle_trap(self.graph, question, self.limits.share(0.1), self._settle)
             if settled is not None:
                 known = Finding(settled.exists, settled.sets, str(settled.stats["rule"]))
         if known is not None and known.exists is not None:
@@ -80,6 +84,16 @@ class Decisions:
     def scene(self) -> str:
         """Where traps are looked for, as the beginning of a sentence."""
         return ""
+
+    def _settle(self, question: RobustnessQuestion, limits: Limits) -> Answer | None:
+        """Return what is settled at little cost; every threat model asks for the same few r and s."""
+        asked = question.r, question.s
+        if asked not in self._settled:
+            answer = settle_quickly(question, limits)
+            if limits.expired() or (answer is not None and answer.verdict is Verdict.UNDECIDED):
+                return answer  # with more time there may be a better one
+            self._settled[asked] = answer
+        return self._settled[asked]
 
     def _implied(self, question: Question) -> Finding | None:
         """Derive the answer from others: see the lemmas in :mod:`robustness.traps.question`."""
@@ -104,7 +118,7 @@ class Decisions:
             # For f = 0 all kinds are one: nodes of S_k hear neither a malicious node nor anybody else outside S_k.
             return self._violation(f, share)
         limits = self.limits.share(share)
-        exists, sets, name, stats = decide_trap(self.graph, question, limits)
+        exists, sets, name, stats = decide_trap(self.graph, question, limits, settle=self._settle)
         how = str(stats.get("rule", "")) or f"complete search ({stats.get('nodes', 0)} nodes)"
         if exists is None:
             how = str(stats.get("reason", "a limit was reached"))

@@ -24,7 +24,6 @@ import numpy as np
 import numpy.typing as npt
 
 from robustness.decision.front import check_within
-from robustness.decision.ladder import TRANSFORM_NODES
 from robustness.digraph import Digraph
 from robustness.evidence import Growth
 from robustness.limits import Limits
@@ -53,9 +52,9 @@ _SEED_CREDIT, _SEED_SHARE = 64, 4
 _EXTRA_STEPS = 1_000_000_000
 _AHEAD_FIRST, _AHEAD_MOST = 4, 1024
 
-#: The bare search is tried for so many steps (about a tenth of a second), on graphs of up to so many nodes, before the
-#: front takes all its means.
-_QUICK_STEPS, _QUICK_NODES = 100_000_000, 512
+#: The bare search is tried for so many steps (about a tenth of a second), on graphs of so many nodes, before the front
+#: takes all its means.
+_QUICK_STEPS, _QUICK_NODES = 100_000_000, range(19, 513)
 
 
 class UnionDecider:
@@ -215,7 +214,7 @@ class UnionDecider:
         The front's cheap bounds look for what the earlier unions have taught already, and on graphs of middling size
         they take far longer than most searches.
         """
-        if self._algorithm == "auto" and TRANSFORM_NODES < graph.n <= _QUICK_NODES:
+        if self._algorithm == "auto" and graph.n in _QUICK_NODES:
             quick = check_within(graph, self.r, self.s, limits.counted(_QUICK_STEPS), "subset-search")
             if quick.verdict is not Verdict.UNDECIDED or limits.expired():
                 return quick

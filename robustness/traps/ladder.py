@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
+from robustness.answers import Rung
+from robustness.decision.ladder import settle_quickly
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
 from robustness.limits import Limits
@@ -30,10 +32,14 @@ def decide_trap(
     limits: Limits,
     algorithm: str = "auto",
     options: Mapping[str, Any] = MappingProxyType({}),
+    settle: Rung = settle_quickly,
 ) -> TrapAnswer:
-    """Return the answer to one question on ids; its sets were checked against the definition."""
+    """Return the answer to one question on ids; its sets were checked against the definition.
+
+    ``settle`` is what :func:`robustness.traps.shortcuts.settle_trap` asks.
+    """
     if algorithm == "auto" and not options:
-        settled = settle_trap(graph, question, limits)
+        settled = settle_trap(graph, question, limits, settle)
         if settled is not None:
             return settled.rechecked(graph, question)
     name = "search" if algorithm == "auto" else algorithm

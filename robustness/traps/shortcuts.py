@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from robustness import answers
-from robustness.decision.bounds import settle
+from robustness.decision.ladder import settle_quickly
 from robustness.definitions import largest_conceivable_r, r_reachable_ids
 from robustness.digraph import Digraph
 from robustness.limits import Limits
@@ -12,15 +12,21 @@ from robustness.traps.question import Question, Sets, TrapAnswer
 __all__ = ["settle_trap"]
 
 
-def settle_trap(graph: Digraph, question: Question, limits: Limits) -> TrapAnswer | None:
-    """Return a solution, or that there is none, with the lemma that settles it; None when no lemma does."""
+def settle_trap(
+    graph: Digraph, question: Question, limits: Limits, settle: answers.Rung = settle_quickly
+) -> TrapAnswer | None:
+    """Return a solution, or that there is none, with the lemma that settles it; None when no lemma does.
+
+    ``settle`` answers questions about (r,s)-robustness at little cost, or says None; whoever asks about many traps of
+    one graph remembers what it said.
+    """
     if graph.n < 2:
         return TrapAnswer.by_lemma(None, "fewer than two nodes: nobody to hold apart")
     for lemma in (_few_nodes, _low_degree, _high_degree):
         settled = lemma(graph, question)
         if settled is not None:
             return settled
-    return _by_robustness(graph, question, limits)
+    return _by_robustness(graph, question, limits, settle)
 
 
 def _few_nodes(graph: Digraph, question: Question) -> TrapAnswer | None:
@@ -71,8 +77,8 @@ def _high_degree(graph: Digraph, question: Question) -> TrapAnswer | None:
     return TrapAnswer.by_lemma(None, f"in-degrees of at least {enough}")
 
 
-def _by_robustness(graph: Digraph, question: Question, limits: Limits) -> TrapAnswer | None:
-    """(2f+1)-robust: none. A violation of (f+1)- or (f+1,f+1)-robustness: one. As far as bounds tell."""
+def _by_robustness(graph: Digraph, question: Question, limits: Limits, settle: answers.Rung) -> TrapAnswer | None:
+    """(2f+1)-robust: none. A violation of (f+1)- or (f+1,f+1)-robustness: one. As far as ``settle`` tells."""
     f, highest = question.f, largest_conceivable_r(graph.n)
     for r, s in ((2 * f + 1, 1), (f + 1, 1), (f + 1, f + 1)):
         if r > highest or limits.expired():

@@ -8,6 +8,8 @@ import networkx as nx
 import pytest
 
 import robustness as rb
+from robustness.answers import Answer, Question
+from robustness.decision.ladder import settle_quickly
 from robustness.errors import InvalidGraph, InvalidParameter
 from robustness.limits import Limits
 from robustness.threat_models import THREAT_MODELS, Standing, tolerance
@@ -144,12 +146,24 @@ class TestLimits:
                 assert any(reason.standing is Standing.UNDECIDED for reason in result.reasons)
                 assert "limit" in result.summary()
 
+    def test_what_settles_one_model_is_asked_once_for_all(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        asked: list[tuple[int, int]] = []
+
+        def note(question: Question, limits: Limits) -> Answer | None:
+            asked.append((question.r, question.s))
+            return settle_quickly(question, limits)
+
+        monkeypatch.setattr("robustness.threat_models.decisions.settle_quickly", note)
+        rb.tolerance(nx.random_regular_graph(5, 24, seed=1))
+        assert asked
+        assert len(set(asked)) == len(asked)
+
     def test_nothing_decided_promises_nothing(self, monkeypatch: pytest.MonkeyPatch) -> None:
         undecided = rb.RobustnessResult(rb.Verdict.UNDECIDED, 1, 1)
         monkeypatch.setattr("robustness.threat_models.decisions.check_within", lambda *_, **__: undecided)
         monkeypatch.setattr("robustness.threat_models.decisions.settle_trap", lambda *_: None)
         stopped = TrapAnswer.undecided("stopped")
-        monkeypatch.setattr("robustness.threat_models.decisions.decide_trap", lambda *_: stopped)
+        monkeypatch.setattr("robustness.threat_models.decisions.decide_trap", lambda *_, **__: stopped)
         decisions = Decisions(rb.Digraph.from_networkx(nx.complete_graph(4)), Limits())
         for threat in THREAT_MODELS.values():
             result = judge(decisions, threat)

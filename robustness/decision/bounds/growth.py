@@ -19,17 +19,22 @@ The seed itself is proven (r,s)-robust by the degree rule inside it (a complete 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
+from robustness.decision.algorithms.transform import largest_s
 from robustness.digraph import Digraph
+from robustness.errors import Undecided
 from robustness.evidence import Growth
-from robustness.limits import Steps
+from robustness.limits import Limits, Steps
 
 __all__ = ["find_growth", "growth_order"]
 
 _WORK_PER_CALL = 20_000_000
+#: Of the transform, for each subset and node (measured).
+_STEPS_TO_EXAMINE = 7
 _SEED_LIMIT = 64
 
 
@@ -90,11 +95,12 @@ def find_growth(graph: Digraph, r: int, s: int = 1, *, steps: Steps | None = Non
         size = grow(*arrays[2:], present, heard, order, 1, 1)
         return Growth(1, 1, (int(order[0]),), order[1:], "node") if size == n else None
     steps = steps or Steps()
+    examine = partial(_is_robust, r, s, steps)
     anchors = np.argsort(-graph.in_degrees, kind="stable").astype(np.int32)
     done, limit = 0, min(n, _SEED_LIMIT, 3 * need + 4)
     while done < n and not steps.over():
         steps.spend(_WORK_PER_CALL)
-        tried, size = find_seed(*arrays, anchors[done:], barred, r, s, limit, _WORK_PER_CALL, order)
+        tried, size = find_seed(*arrays, anchors[done:], barred, r, s, limit, _WORK_PER_CALL, order, examine)
         done += tried
         if not size:
             continue
@@ -106,6 +112,28 @@ def find_growth(graph: Digraph, r: int, s: int = 1, *, steps: Steps | None = Non
         barred[order[:grown]] = True
         forget(*arrays[2:], present, heard, order, grown)
     return None
+
+
+def _is_robust(
+    r: int, s: int, steps: Steps, hears: npt.NDArray[np.uint64], size: int, pair: npt.NDArray[np.int64]
+) -> bool:
+    """Decide for a seed, by all its subsets, whether it is (r,s)-robust; leave a violating pair of it in ``pair``.
+
+    ``hears[i]`` has bit j set when node i of the seed hears node j of it. When the budget is spent, it says no.
+    """
+    if steps.over():
+        return False
+    steps.spend(_STEPS_TO_EXAMINE * size << size)
+    rows = [int(row) for row in hears[:size]]
+    inside = Digraph(range(size), [(j, i) for i, row in enumerate(rows) for j in range(size) if row >> j & 1])
+    try:
+        greatest, found = largest_s(inside, r, Limits())
+    except Undecided:  # no memory for 2^16 bytes
+        return False
+    if found is None or greatest >= s:
+        return True
+    pair[0], pair[1] = (sum(1 << i for i in side) for side in found)
+    return False
 
 
 def _rows(graph: Digraph, seed: tuple[int, ...]) -> npt.NDArray[np.uint64]:
