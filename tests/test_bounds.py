@@ -152,7 +152,7 @@ class TestAgainstTheTruth:
     def test_a_seed_that_an_old_pair_refutes_is_not_examined_again(self, monkeypatch: pytest.MonkeyPatch) -> None:
         examined: list[int] = []
 
-        def note(graph: Digraph, r: int, limits: Limits) -> tuple[int, Pair | None]:
+        def note(graph: rb.Digraph, r: int, limits: Limits) -> tuple[int, Pair | None]:
             examined.append(graph.n)
             return largest_s(graph, r, limits)
 
