@@ -11,6 +11,7 @@ __all__ = [
     "EXPERIMENT_NAMES",
     "FACES",
     "FAULT_MODEL_NAMES",
+    "FORMAT_NAMES",
     "RULE_NAMES",
     "SCHEDULE_NAMES",
     "THREAT_MODEL_NAMES",
@@ -39,6 +40,12 @@ RULE_NAMES = ("adp-msr", "dp-msr", "w-msr")
 FAULT_MODEL_NAMES = ("malicious", "malicious-local", "byzantine", "byzantine-local")
 SCHEDULE_NAMES = ("synchronous", "periodic", "random", "adversarial", "delayed")
 ADVERSARY_NAMES = ("auto", "constant", "ramp", "sine", "random", "two-face", "extreme", "greedy", "crash", "omission")
+
+#: The names in ``robustness.files.FORMAT_NAMES``.
+FORMAT_NAMES = (
+    "json", "graphml", "gexf", "xml", "gml", "edge-list", "adjacency-list", "matrix", "text", "csv", "npy", "npz",
+    "mat", "matrix-market", "dot", "pajek", "graph6", "sparse6", "digraph6",
+)  # fmt: skip
 
 #: The names in ``robustness.paper.experiments.EXPERIMENTS``.
 EXPERIMENT_NAMES = (

@@ -56,7 +56,6 @@ def command(
     came before the decision, and then no set is marked.
     """
     from robustness.figures.network import draw_to_file
-    from robustness.figures.positions import positions_of_file
     from robustness.figures.saving import picture_format
     from robustness.files.writing import require_different_files
 
@@ -83,7 +82,7 @@ def command(
         undecided = answer.verdict is Verdict.UNDECIDED
     elif attack_file is not None:
         answer = _attack(graph, attack_file)
-    draw_to_file(graph, answer, output, pos=positions_of_file(source, graph))
+    draw_to_file(graph, answer, output)
     console.talk(f"wrote {output}")
     ctx.exit(ExitCode.UNDECIDED if undecided else ExitCode.DONE)
 

@@ -12,6 +12,7 @@ import click
 
 from .exit_codes import ExitCode
 from .interruption import Overrun
+from .options import asked_reading, reading_options
 from .output import Console, ProgressLine, set_document, set_text
 from .query import Query, query_options
 
@@ -43,6 +44,7 @@ class Report:
                 "period": sequence.period,
                 "arcs": len(sequence.arc_codes),
                 "directed": sequence.directed,
+                "read_as": sequence.read_as or None,
             },
             "verdict": result.verdict.value,
             "r": result.r,
@@ -69,6 +71,7 @@ class Report:
 
 @click.command("joint")
 @click.argument("source", metavar="SEQ")
+@reading_options
 @click.option("-r", type=click.IntRange(min=0), required=True, help="Jointly (R,S)-robust?")
 @click.option("-s", type=click.IntRange(min=1), default=1, show_default=True, help="See -r; 1 is r-robustness.")
 @click.option("--window", type=click.IntRange(min=1), metavar="L", help="Over every L steps; else find the smallest L.")
@@ -110,7 +113,7 @@ def command(
            .json or -        {"nodes": [...], "period": P or null, "steps": [[[u, v], ...], ...]}
                              or a list of node-link documents
            .jsonl            a step a line
-           .csv              contacts time,source,target, put into bins of --step
+           .csv, .txt, ...   contacts time,source,target, put into bins of --step
 
     A finite SEQ says nothing about what comes after it: its windows do not wrap. With a period they do.
     'python -m certificates verify-joint' verifies what --canonical and --certificate write, with nothing but Python.
@@ -123,7 +126,7 @@ def command(
     if all_windows and window is None:
         raise click.UsageError("--all-windows decides every window of one length: give --window as well.")
     require_different_files([source], [picture, certificate, canonical])
-    sequence = read_sequence(source, period=period, step=step, both_ways=both_ways)
+    sequence = read_sequence(source, period=period, step=step, both_ways=both_ways, reading=asked_reading())
     with ProgressLine(console) as line:
         survey = Survey(sequence, r, s, tau, Clock(query.timeout), query, line)
         drawn = picture is not None

@@ -124,8 +124,8 @@ def _print_version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None
 def robustness(console: Console) -> None:
     """How many malicious nodes can resilient consensus survive on this network?
 
-    GRAPH is a file (.json node-link, .graphml, .gml, .gexf, .edgelist, .txt, .csv or .npy adjacency matrix,
-    .g6, .s6, .d6), - for node-link JSON on standard input, or a name such as topohub:topozoo/Abilene.
+    GRAPH is a file (.json, .graphml, .gexf, .gml, .dot, .net, .edgelist, .txt, .csv, .npy, .mtx, .g6, ...), - for
+    node-link JSON on standard input, or a name such as topohub:topozoo/Abilene. docs/formats.md says how each is read.
 
     \b
     Exit codes: 0 proven or done   10 refuted     30 undecided   2 usage

@@ -15,10 +15,11 @@ import click
 from .choices import THREAT_MODEL_NAMES
 from .exit_codes import ExitCode
 from .interruption import interruptibly
-from .options import jobs_option, seed_option, timeout_option
+from .options import asked_reading, jobs_option, reading_options, seed_option, timeout_option
 from .output import Console
 
 if TYPE_CHECKING:
+    from robustness.files import ReadingOptions
     from robustness.surveying import Gate, Row, Survey
     from robustness.surveying.row import Findings
 
@@ -26,6 +27,7 @@ __all__ = ["ManyNetworks", "exit_code", "many_networks_options", "run_survey"]
 
 _OPTIONS: tuple[Callable[[Any], Any], ...] = (
     click.argument("paths", nargs=-1, metavar="PATH..."),
+    reading_options,
     click.option(
         "--from",
         "listed",
@@ -76,6 +78,7 @@ class ManyNetworks:
     certificates : Path or None
     timeout, total_timeout : float or None
     jobs, seed : int
+    reading : ReadingOptions
     """
 
     paths: tuple[str, ...]
@@ -86,6 +89,7 @@ class ManyNetworks:
     total_timeout: float | None
     jobs: int
     seed: int
+    reading: ReadingOptions
 
 
 def many_networks_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -121,7 +125,9 @@ def many_networks_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
         gate = Gate(r, 1 if s is None else s, survive)
         looked_at = () if no_models else models or THREAT_MODEL_NAMES
-        networks = ManyNetworks(wanted, gate, looked_at, certificates, timeout, total_timeout, jobs, seed)
+        networks = ManyNetworks(
+            wanted, gate, looked_at, certificates, timeout, total_timeout, jobs, seed, asked_reading()
+        )
         return command(*arguments, networks=networks, **others)
 
     for option in reversed(_OPTIONS):
@@ -165,6 +171,7 @@ def run_survey(
             certificates=networks.certificates,
             on_row=line.note,
             on_findings=on_findings,
+            reading=networks.reading,
         )
 
     try:

@@ -90,9 +90,9 @@ def command(
 
 def _positions(source: str, graph: Digraph) -> dict[Any, tuple[float, float]]:
     from robustness.errors import UnreadableTopology
-    from robustness.figures.positions import positions_of_file
+    from robustness.figures.placement import positions_in
 
-    places = positions_of_file(source, graph)
+    places = positions_in(graph)
     if places is None:
         raise UnreadableTopology(f"{source}: places not every node: --range and --cost distance need positions")
     return places

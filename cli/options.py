@@ -9,19 +9,22 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from .choices import ALGORITHM_NAMES
+from .choices import ALGORITHM_NAMES, FORMAT_NAMES
 from .output import Console
 
 if TYPE_CHECKING:
     from robustness.digraph import Digraph
+    from robustness.files.found import ReadingOptions
 
 __all__ = [
     "Seconds",
     "algorithm_option",
+    "asked_reading",
     "graph_argument",
     "jobs_option",
     "json_option",
     "load_graph",
+    "reading_options",
     "seed_option",
     "talk_options",
     "timeout_option",
@@ -46,7 +49,88 @@ class Seconds(click.ParamType):  # type: ignore[type-arg]  # generic only from c
         return seconds
 
 
-graph_argument = click.argument("source", metavar="GRAPH")
+#: Where the reading options of a command are kept, in click's context.
+_READING = "robustness.reading"
+
+
+def _keep(ctx: click.Context, param: click.Parameter, value: Any) -> None:
+    if value is not None:
+        ctx.meta.setdefault(_READING, {})[param.name] = value
+
+
+def _keep_columns(ctx: click.Context, param: click.Parameter, value: str | None) -> None:
+    if value is not None:
+        from robustness.files.found import parsed_columns
+
+        _keep(ctx, param, parsed_columns(value))
+
+
+_READING_OPTIONS: tuple[Callable[[Any], Any], ...] = (
+    click.option(
+        "--format",
+        metavar="NAME",
+        expose_value=False,
+        callback=_keep,
+        help=f"What the file is, whatever its suffix: {', '.join(FORMAT_NAMES)}.",
+    ),
+    click.option(
+        "--directed/--undirected",
+        default=None,
+        expose_value=False,
+        callback=_keep,
+        help="Links of which the file says nothing run one way; or all run both ways.  [default: as the file says]",
+    ),
+    click.option(
+        "--label-attribute",
+        metavar="NAME",
+        expose_value=False,
+        callback=_keep,
+        help="The attribute that names the nodes; id for what the file tells them apart by.",
+    ),
+    click.option(
+        "--rows",
+        type=click.Choice(["speak", "hear"]),
+        expose_value=False,
+        callback=_keep,
+        help="Row u of a matrix says who hears u (speak), or whom u hears.  [default: speak]",
+    ),
+    click.option(
+        "--columns",
+        metavar="source=N,target=N",
+        expose_value=False,
+        callback=_keep_columns,
+        help="Where the ends of links stand in a table: numbers from 1, or names; for contacts time=N as well.",
+    ),
+    click.option(
+        "--skip-lines",
+        type=click.IntRange(min=0),
+        metavar="N",
+        expose_value=False,
+        callback=_keep,
+        help="So many lines at the beginning of a text are no links.",
+    ),
+)
+
+
+def reading_options(command: _Command) -> _Command:
+    """Add what every command understands that reads a network: how its file is to be read."""
+    wrapped: Any = command
+    for option in reversed(_READING_OPTIONS):
+        wrapped = option(wrapped)
+    return wrapped  # type: ignore[no-any-return]  # each option returns what it is given
+
+
+def graph_argument(command: _Command) -> _Command:
+    """Add the argument GRAPH, as ``source``, and the reading options."""
+    return click.argument("source", metavar="GRAPH")(reading_options(command))
+
+
+def asked_reading() -> ReadingOptions:
+    """Return the reading options of the command that runs."""
+    from robustness.files.found import ReadingOptions
+
+    return ReadingOptions(**click.get_current_context().meta.get(_READING, {}))
+
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print one JSON document with a schema key.")
 
@@ -78,9 +162,9 @@ algorithm_option = click.option(
 
 def load_graph(source: str) -> Digraph:
     """Return the graph that GRAPH means; see :func:`robustness.files.read_topology`."""
-    from robustness.files import read_topology
+    from robustness.files.front import read_with
 
-    return read_topology(source)
+    return read_with(source, asked_reading())
 
 
 def _set_color(ctx: click.Context, _: click.Parameter, when: str | None) -> None:

@@ -103,8 +103,12 @@ class ProgressLine:
 
 
 def graph_document(graph: Digraph) -> dict[str, Any]:
-    """Return what every JSON document says about the graph; an undirected edge is two arcs."""
-    return {"nodes": graph.n, "arcs": graph.arc_count, "directed": graph.directed, "sha256": graph.sha256}
+    """Return what every JSON document says about the graph; an undirected edge is two arcs.
+
+    ``read_as`` says how its file was read; null for a graph that came from no file.
+    """
+    shape = {"nodes": graph.n, "arcs": graph.arc_count, "directed": graph.directed}
+    return {**shape, "sha256": graph.sha256, "read_as": graph.read_as or None}
 
 
 def set_document(labels: Iterable[Label]) -> list[Label]:

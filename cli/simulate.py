@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from .choices import ADVERSARY_NAMES, EXPERIMENT_NAMES, FAULT_MODEL_NAMES, RULE_NAMES, SCHEDULE_NAMES
+from .options import reading_options
 from .output import Console
 from .query import Query, query_options
 from .simulate_asked import SCHEMA, Simulation
@@ -19,6 +20,7 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 
 @click.command("simulate")
 @click.argument("source", metavar="[GRAPH]", required=False)
+@reading_options
 @click.option("--experiment", type=click.Choice(EXPERIMENT_NAMES), help="An experiment of the paper instead of GRAPH.")
 @click.option("--replay", type=_FILE, metavar="FILE", help="A run recorded with --save instead of GRAPH.")
 @click.option("--attack", "attack_file", type=_FILE, metavar="FILE", help="Play the attack that 'attack -o' wrote.")

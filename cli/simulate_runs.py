@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .exit_codes import ExitCode
-from .options import load_graph
+from .options import asked_reading, load_graph
 from .output import Console, graph_document, set_document, set_text
 from .query import Query
 from .simulate_asked import SCHEMA, Simulation
@@ -100,7 +100,7 @@ def _network(asked: Simulation) -> Topology:
         return as_topology(load_graph(str(asked.source)), 1)
     from robustness.time_varying import read_sequence
 
-    return as_topology(read_sequence(str(asked.source), period=asked.repeat), asked.steps)
+    return as_topology(read_sequence(str(asked.source), period=asked.repeat, reading=asked_reading()), asked.steps)
 
 
 def _scenario_of_attack(attack: Attack, asked: Simulation) -> Scenario:

@@ -15,7 +15,7 @@ import click
 from .choices import THREAT_MODEL_NAMES
 from .exit_codes import ExitCode
 from .interruption import Overrun
-from .options import graph_argument, load_graph
+from .options import asked_reading, graph_argument, load_graph
 from .output import Console, ProgressLine, graph_document, set_text
 from .query import Query, query_options
 
@@ -165,7 +165,7 @@ def _load(source: str, tau: int | None, period: int | None) -> tuple[Digraph | T
         return graph, graph
     from robustness.time_varying import read_sequence
 
-    sequence = read_sequence(source, period=period)
+    sequence = read_sequence(source, period=period, reading=asked_reading())
     return sequence, sequence.union(0, len(sequence))
 
 

@@ -9,7 +9,7 @@ import click
 
 from .choices import FACES
 from .exit_codes import ExitCode
-from .options import graph_argument, json_option, load_graph
+from .options import asked_reading, graph_argument, json_option, load_graph
 from .output import Console
 from .query import speaking
 
@@ -124,7 +124,7 @@ def _sequence_bytes(source: str) -> bytes:
         data = read_at_most(path, MAX_SEQUENCE_BYTES)
         if SEQUENCE_FORMAT.encode() in data[:64]:
             return data
-    return canonical_sequence(read_sequence(source))
+    return canonical_sequence(read_sequence(source, reading=asked_reading()))
 
 
 def _document(claim: Claim) -> dict[str, object]:

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     )
     from robustness.figures.network import draw
     from robustness.files import read_topology, write_topology
+    from robustness.files.from_memory import from_adjacency, from_edges, from_igraph, from_neighbours
     from robustness.graph_search import find_graph
     from robustness.mending import Goal, MendResult, margin, mend, thin
     from robustness.reporting import report
@@ -72,6 +73,10 @@ _LATER = {
     "determine_robustness": "robustness.decision.front",
     "draw": "robustness.figures.network",
     "find_graph": "robustness.graph_search",
+    "from_adjacency": "robustness.files.from_memory",
+    "from_edges": "robustness.files.from_memory",
+    "from_igraph": "robustness.files.from_memory",
+    "from_neighbours": "robustness.files.from_memory",
     "is_r_robust": "robustness.decision.front",
     "is_rs_robust": "robustness.decision.front",
     "joint_curve": "robustness.time_varying",
@@ -119,6 +124,10 @@ __all__ = [
     "determine_robustness",
     "draw",
     "find_graph",
+    "from_adjacency",
+    "from_edges",
+    "from_igraph",
+    "from_neighbours",
     "is_r_robust",
     "is_rs_robust",
     "joint_curve",

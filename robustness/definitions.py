@@ -23,6 +23,7 @@ from certificates.graph import Label
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.evidence import Pair
+from robustness.whole_numbers import taking_numpy_integers
 
 __all__ = [
     "half_split",
@@ -66,6 +67,7 @@ def require_r_and_s(graph: Digraph, r: int, s: int = 1) -> None:
         raise InvalidParameter(f"s is an integer in 1..n = 1..{max(graph.n, 1)}, not {s!r}")
 
 
+@taking_numpy_integers
 def r_reachable_nodes(G: GraphLike, S: Iterable[Hashable], r: int) -> frozenset[Label]:
     """Return ``X_S^r = { i in S : |N_i \\ S| >= r }``, the nodes of S with at least r in-neighbours outside S.
 

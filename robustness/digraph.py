@@ -8,9 +8,11 @@ equal ids, equal bytes and an equal SHA-256, however they were built.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Hashable, Iterable, Mapping, Set
+from collections.abc import Hashable, Iterable, Mapping, Sequence, Set
+from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, final
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NoReturn, final
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +24,7 @@ from robustness.errors import InvalidGraph
 if TYPE_CHECKING:
     import networkx as nx
 
-__all__ = ["Digraph", "GraphLike", "GraphWarning", "as_digraph"]
+__all__ = ["Digraph", "GraphLike", "GraphWarning", "as_digraph", "plain_label"]
 
 
 class GraphWarning(UserWarning):
@@ -35,8 +37,9 @@ class Digraph:
 
     Parameters
     ----------
-    labels : iterable of int, str or tuples of these
-        The nodes, in any order. ``1`` and ``'1'`` are two nodes.
+    labels : iterable of hashable
+        The nodes, in any order: integers, strings and tuples of these, as they are (``1`` and ``'1'`` are two nodes);
+        any other label that has a stable text (a float, a member of an Enum, an address, a frozenset) by its text.
     arcs : iterable of pairs of labels
         ``(u, v)``: v hears u. Repeated arcs count once (``N_i`` is a set). Self-loops are dropped with a
         :class:`GraphWarning`: a node of S is never outside S, so no definition sees them.
@@ -60,29 +63,67 @@ class Digraph:
 
     labels: tuple[Label, ...]
     directed: bool
+    #: What a reader took for granted, in one line; empty for a graph that came from no file.
+    read_as: str
+    #: What a file says of its nodes beside their labels (``pos``, ``label``, ``id``), by label; no mathematics sees it.
+    node_attributes: Mapping[Label, Mapping[str, object]]
     in_indptr: npt.NDArray[np.int64]
     in_indices: npt.NDArray[np.int32]
 
     def __init__(
-        self, labels: Iterable[Hashable], arcs: Iterable[tuple[Hashable, Hashable]], *, directed: bool = True
+        self,
+        labels: Iterable[Hashable],
+        arcs: Iterable[tuple[Hashable, Hashable]],
+        *,
+        directed: bool = True,
+        read_as: str = "",
+        node_attributes: Mapping[Hashable, Mapping[str, object]] = MappingProxyType({}),
     ) -> None:
         given = list(labels)
-        plain = {label: _plain(label) for label in given}
-        if len(plain) != len(given):
-            raise InvalidGraph("node labels are distinct, but one is given twice: give every node its own label")
-        self.labels = tuple(_canonical_order(plain.values()))
-        place = {label: i for i, label in enumerate(self.labels)}
-        index = {label: place[value] for label, value in plain.items()}
+        place = {label: i for i, label in enumerate(given)}
         try:
-            ends = np.fromiter((index[end] for arc in arcs for end in arc), dtype=np.int64).reshape(-1, 2)
+            ends = np.fromiter((place[end] for arc in arcs for end in arc), dtype=np.int64).reshape(-1, 2)
         except KeyError as unknown:
             raise InvalidGraph(f"an arc joins two nodes of the graph, but {unknown} is none: add the node") from None
+        self._build(given, ends)
+        self.directed = directed
+        self.read_as = read_as
+        self.node_attributes = MappingProxyType({plain_label(node): values for node, values in node_attributes.items()})
+
+    @classmethod
+    def from_ends(
+        cls,
+        labels: Sequence[Hashable],
+        ends: npt.NDArray[np.int64],
+        *,
+        directed: bool = True,
+        read_as: str = "",
+        node_attributes: Mapping[Hashable, Mapping[str, object]] = MappingProxyType({}),
+    ) -> Digraph:
+        """Return the digraph whose arcs join the labels at these places, shape ``(m, 2)``: without a loop over arcs."""
+        graph = cls.__new__(cls)
+        graph._build(labels, ends)
+        graph.directed = directed
+        graph.read_as = read_as
+        graph.node_attributes = MappingProxyType(
+            {plain_label(node): values for node, values in node_attributes.items()}
+        )
+        return graph
+
+    def _build(self, given: Sequence[Hashable], ends: npt.NDArray[np.int64]) -> None:
+        """Set labels and rows from the labels in the order given and arcs between their places."""
+        plain = [plain_label(label) for label in given]
+        if len(set(plain)) < len(plain):
+            _refuse_equal_texts(given, plain)
+        self.labels = tuple(_canonical_order(plain))
+        index = {label: i for i, label in enumerate(self.labels)}
+        ends = np.array([index[label] for label in plain], dtype=np.int64)[ends] if len(ends) else ends
         loops = ends[:, 0] == ends[:, 1]
         if loops.any():
             warnings.warn(
                 f"{int(loops.sum())} self-loop(s) dropped: no robustness definition depends on them",
                 GraphWarning,
-                stacklevel=2,
+                stacklevel=3,
             )
             ends = ends[~loops]
         codes = np.sort(ends[:, 1] * len(given) + ends[:, 0])
@@ -91,7 +132,6 @@ class Digraph:
         self.in_indices = tails.astype(np.int32)
         self.in_indptr.setflags(write=False)
         self.in_indices.setflags(write=False)
-        self.directed = directed
 
     @classmethod
     def from_networkx(cls, graph: nx.Graph) -> Digraph:
@@ -108,11 +148,14 @@ class Digraph:
         return cls(graph.nodes(), arcs, directed=graph.is_directed())
 
     def to_networkx(self) -> nx.Graph:
-        """Return a new networkx graph: a ``Graph`` when the source was undirected, else a ``DiGraph``."""
+        """Return a new networkx graph: a ``Graph`` when the source was undirected, else a ``DiGraph``.
+
+        What the source said of its nodes (``pos``, ``label``, ``id``) are their attributes.
+        """
         import networkx as nx
 
         graph: nx.Graph = nx.DiGraph() if self.directed else nx.Graph()
-        graph.add_nodes_from(self.labels)
+        graph.add_nodes_from((label, dict(self.node_attributes.get(label, {}))) for label in self.labels)
         graph.add_edges_from((self.labels[u], self.labels[v]) for u, v in self.arcs())
         return graph
 
@@ -120,7 +163,10 @@ class Digraph:
         """Return the graph without the nodes whose ids are in ``removed``."""
         kept = [label for i, label in enumerate(self.labels) if i not in removed]
         arcs = [(self.labels[u], self.labels[v]) for u, v in self.arcs() if u not in removed and v not in removed]
-        return Digraph(kept, arcs, directed=self.directed)
+        data: dict[Hashable, Mapping[str, object]] = {
+            label: self.node_attributes[label] for label in kept if label in self.node_attributes
+        }
+        return Digraph(kept, arcs, directed=self.directed, read_as=self.read_as, node_attributes=data)
 
     @property
     def n(self) -> int:
@@ -180,7 +226,7 @@ class Digraph:
     def ids(self, labels: Iterable[Hashable]) -> frozenset[int]:
         """Return the ids of ``labels``; an unknown label is an :class:`InvalidGraph` error."""
         try:
-            return frozenset(self.index[_plain(label)] for label in labels)
+            return frozenset(self.index[plain_label(label)] for label in labels)
         except KeyError as unknown:
             raise InvalidGraph(f"a node set holds nodes of the graph, but {unknown} is none") from None
 
@@ -220,26 +266,64 @@ GraphLike = Any
 
 
 def as_digraph(graph: GraphLike) -> Digraph:
-    """Return ``graph`` as a :class:`Digraph`; networkx graphs are converted, anything else is refused."""
+    """Return ``graph`` as a :class:`Digraph`.
+
+    Graphs of networkx are converted; anything else is refused, with the function that converts it.
+    """
     if isinstance(graph, Digraph):
         return graph
     if hasattr(graph, "is_multigraph") and hasattr(graph, "edges"):
         return Digraph.from_networkx(graph)
     raise InvalidGraph(
         f"a graph is a networkx Graph or DiGraph or a robustness.Digraph, not {type(graph).__name__}: "
-        "convert it to networkx first"
+        "robustness.from_adjacency takes a matrix, from_edges pairs, from_neighbours a dict, from_igraph a graph of "
+        "igraph, read_topology a file"
     )
 
 
-def _plain(label: Hashable) -> Label:
-    """Return ``label`` with numpy scalars made plain Python values."""
+def plain_label(label: Hashable) -> Label:
+    """Return what stands for ``label`` in the canonical graph: itself, a plain value for a NumPy one, or its text.
+
+    Integers, strings and tuples stand for themselves. Every other label stands for its text, so far as its type gives
+    it one of its own: a frozenset for its members in order, a member of an Enum for its class and name.
+
+    Raises
+    ------
+    InvalidGraph
+        When the text would be another one in the next process, such as ``<object object at 0x...>``.
+    """
     if isinstance(label, np.generic):
         label = label.item()
-    if type(label) is tuple:
-        return tuple(_plain(part) for part in label)
-    if isinstance(label, str) and type(label) is not str:
+    if type(label) is int or type(label) is str:
+        return label
+    if isinstance(label, tuple):
+        return tuple(plain_label(part) for part in label)
+    if isinstance(label, Enum):
+        return f"{type(label).__name__}.{label.name}"
+    if isinstance(label, str):
         return str(label)
-    return label  # type: ignore[return-value]  # label_key refuses every other type
+    if isinstance(label, frozenset):
+        return "{" + ", ".join(sorted(str(plain_label(part)) for part in label)) + "}"
+    kind = type(label)
+    if (kind.__str__ is object.__str__ and kind.__repr__ is object.__repr__) or " at 0x" in (text := str(label)):
+        raise InvalidGraph(
+            f"a node label has a text that stays the same, and {kind.__name__} has none: give it __str__, or relabel "
+            "the "
+            "nodes, for example with networkx.convert_node_labels_to_integers"
+        )
+    return text
+
+
+def _refuse_equal_texts(given: Sequence[Hashable], plain: Sequence[Label]) -> NoReturn:
+    """Say which nodes are the same, or stand for the same label."""
+    seen: dict[Label, Hashable] = {}
+    for label, text in zip(given, plain, strict=True):
+        if text in seen and seen[text] == label:
+            break
+        if text in seen:
+            raise InvalidGraph(f"the nodes {seen[text]!r} and {label!r} have the same text {text!r}: relabel one")
+        seen[text] = label
+    raise InvalidGraph("node labels are distinct, but one is given twice: give every node its own label")
 
 
 def _canonical_order(labels: Iterable[Label] | Set[Label]) -> list[Label]:

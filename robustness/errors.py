@@ -6,6 +6,7 @@
     ├── InvalidGraph (also ValueError)       the input is not a graph the definitions speak about
     ├── InvalidParameter (also ValueError)   r, s, f, a limit or an option is out of range
     ├── UnreadableTopology (also ValueError) a file or a name does not yield a graph
+    │   └── MissingTopology (also FileNotFoundError) there is no file of this name
     ├── MissingExtra (also ImportError)      an optional package is not installed
     ├── Undecided                            a limit stopped the search; nothing is claimed
     └── InternalError (also RuntimeError)    an algorithm contradicted itself; a bug, never a verdict
@@ -27,6 +28,7 @@ __all__ = [
     "InvalidGraph",
     "InvalidParameter",
     "MissingExtra",
+    "MissingTopology",
     "RobustnessError",
     "Undecided",
     "UnreadableTopology",
@@ -47,6 +49,13 @@ class InvalidParameter(RobustnessError, ValueError):
 
 class UnreadableTopology(RobustnessError, ValueError):
     """A file, a stream or a name does not yield a graph."""
+
+
+class MissingTopology(UnreadableTopology, FileNotFoundError):
+    """There is no file of this name."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
 
 
 class MissingExtra(RobustnessError, ImportError):

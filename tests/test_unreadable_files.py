@@ -18,6 +18,8 @@ from robustness import Digraph, GraphWarning, InvalidGraph, UnreadableTopology
 from robustness.files import FORMATS, decode_topology, encode_topology
 from robustness.files import graph6 as graph6_module
 
+DATA = Path(__file__).parent / "data"
+
 
 def decode_quietly(data: bytes, suffix: str) -> Digraph:
     with warnings.catch_warnings():
@@ -60,7 +62,7 @@ class TestBadNodeLinkJson:
             ('{"nodes": [{"id": 1, "id": 2}], "edges": []}', "'id' stands twice"),
             ('{"directed": 1, "nodes": [], "edges": []}', "'directed' is true or false"),
             ('{"nodes": [{}], "edges": []}', "nodes[0]: has no 'id'"),
-            ('{"nodes": ["a"], "edges": []}', "nodes[0]: is an object"),
+            ('{"nodes": ["a", {"id": 1}], "edges": []}', "nodes[0]: is an object"),
             ('{"nodes": [{"id": "a"}, {"id": "a"}], "edges": []}', "nodes[1]: the id 'a' is given twice"),
             ('{"nodes": [{"id": [1]}, {"id": [1]}], "edges": []}', "nodes[1]: the id (1,) is given twice"),
             ('{"nodes": [{"id": 1.5}], "edges": []}', "nodes[0]: 'id' is an integer"),
@@ -100,7 +102,7 @@ class TestBadNodeLinkJson:
 
     @pytest.mark.parametrize("suffix", sorted(FORMATS))
     def test_every_truncation_is_an_answer_or_one_line(self, suffix: str) -> None:
-        data = encode_quietly(nx.relabel_nodes(nx.cycle_graph(4), str), suffix)
+        data = (DATA / f"square{suffix}").read_bytes() if suffix != ".d6" else encode_quietly(nx.cycle_graph(4), suffix)
         for length in range(len(data)):
             try:
                 decode_quietly(data[:length], suffix)
@@ -118,13 +120,24 @@ class TestBadTextFiles:
         [
             ("a b\nc\n", "line 2: has 1 columns, but line 1 has 2"),
             ("a\nb\n", "line 1: an edge is two labels"),
-            ("4 5\n1 2\n1 3\n2 3\n2 4\n3 4\n", "may be a link, or the numbers of nodes and links"),
-            ("gain 1 2 -60\ngain 1 3 -60\n", "may be a keyword or a node"),
+            ("5 4\n1 2\n1 3\n2 4\n4 5\n", "may be a link, or the numbers of nodes and links: --skip-lines 1 if"),
+            ("gain 1 2 -60\ngain 1 3 -60\n", "which may be a keyword or a node: --columns source=2,target=3"),
             ("one two three\nfour five six\n", "'three' in column 3 is neither a label nor a weight"),
             ("1 -> 2\n2 3\n", "line 2: has no arrow"),
             ("1 -> 2\n2 -- 3\n", "some lines have '->' and some '--'"),
             ("# directed\n# undirected\n1 2\n", "line 2: one comment says directed and another undirected"),
             ("0 1 5\n1 2 3\n2 0 4\n", "may be a matrix and may be 3 links"),
+            ("u v\nx y\n", "u v may be a link or the names of the columns: --skip-lines 1"),
+            ("node1 node2\nnode3 node4\n", "node1 node2 may be a link or the names of the columns"),
+            ("1 2\n2 1\n2 3\n", "may run one way or both: '1' '2' is given in both directions and '2' '3' in one"),
+            (
+                "1 2 3\n2 1 3\n3 1 2\n",
+                "may be links with weights and may be lists of neighbours: say which with --format",
+            ),
+            ("1 2 3\n2 1\n3 1 4\n4 3\n5 1 2 3\n", "line 2: has 2 columns"),
+            ("1: 2\n2: 3\n3:\n", "'1' lists '2' and '2' does not list '1': --undirected"),
+            ("% bip unweighted\n1 1\n1 2\n", "line 1: a comment says bipartite"),
+            ("7\n1 2\n2 3\n", "line 1: 7 may be the number of nodes or of links"),
             ("# nothing\n\n", "none"),
             ("a b\n\u0000\n", "line 2"),
         ],
@@ -168,8 +181,8 @@ class TestBadTextFiles:
             ("0,1,0,1\n1,0,1,0\n", "square, not 2 x 4"),
             ("1,2\n2,3\n", "may be a matrix and may be 2 links"),
             ("0,x,0,1\n1,0,1,0\n0,1,0,1\n1,0,1,0\n", "line 1, column 2: 'x' is not a number"),
-            ("0,1\n\nnan,0\n", "line 3, column 1: 'nan' may be no link"),
-            ("0,inf\n1,0\n", "line 1, column 2"),
+            ("0,1,0\n\nnan,0,1\n0,1,0\n", "line 3, column 1: 'nan' may be no link"),
+            ("0,inf,0\n1,0,0\n0,0,0\n", "line 1, column 2"),
             ("0,\n1,0\n", "line 1: one end of the link is empty"),
             ("0,-1,0\n1,0,1\n0,1,0\n", "line 1, column 2: '-1' may be no link"),
             ("0,1e-999,0\n1,0,1\n0,1,0\n", "line 1, column 2: '1e-999' is too small a number"),
@@ -188,7 +201,7 @@ class TestBadTextFiles:
     @pytest.mark.parametrize(
         ("data", "suffix", "complaint"),
         [
-            (b"A_\nA_\n", ".g6", "line 2: a second graph"),
+            (b"A_\nA_\n", ".g6", "line 2: a second graph follows: one of the 2 is meant, for example FILE#1"),
             (b"A", ".g6", ""),
             (b"A__", ".g6", ""),
             (b"A\x07\n", ".g6", "line 1, column 2: byte 0x07"),

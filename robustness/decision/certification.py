@@ -24,6 +24,7 @@ from robustness.errors import InternalError, InvalidParameter
 from robustness.evidence import Convention, DegreeRule, Evidence, Growth, Refutation, ViolatingPair
 from robustness.limits import Limits, Progress
 from robustness.results import RobustnessResult
+from robustness.whole_numbers import taking_numpy_integers
 
 __all__ = ["Encoded", "certify", "certify_within", "direct_evidence", "encode", "kernel_evidence"]
 
@@ -31,6 +32,7 @@ __all__ = ["Encoded", "certify", "certify_within", "direct_evidence", "encode", 
 Encoded = tuple[dict[str, Any], bytes]
 
 
+@taking_numpy_integers
 def certify(
     G: GraphLike,
     r: int,

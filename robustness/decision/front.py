@@ -19,6 +19,7 @@ from robustness.decision.ladder import decide
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.limits import Limits, Progress
 from robustness.results import Bounds, RobustnessResult
+from robustness.whole_numbers import taking_numpy_integers
 
 __all__ = [
     "check_rs_robustness",
@@ -30,6 +31,7 @@ __all__ = [
 ]
 
 
+@taking_numpy_integers
 def is_r_robust(G: GraphLike, r: int, **options: Any) -> bool:
     """Return whether G is r-robust, that is (r,1)-robust.
 
@@ -42,6 +44,7 @@ def is_r_robust(G: GraphLike, r: int, **options: Any) -> bool:
     return check_rs_robustness(G, r, 1, **options).decided()
 
 
+@taking_numpy_integers
 def is_rs_robust(G: GraphLike, r: int, s: int, **options: Any) -> bool:
     """Return whether G is (r,s)-robust.
 
@@ -54,6 +57,7 @@ def is_rs_robust(G: GraphLike, r: int, s: int, **options: Any) -> bool:
     return check_rs_robustness(G, r, s, **options).decided()
 
 
+@taking_numpy_integers
 def check_rs_robustness(
     G: GraphLike,
     r: int,
@@ -138,6 +142,7 @@ def check_within(
     return RobustnessResult.of(question, answer, time.monotonic() - started)
 
 
+@taking_numpy_integers
 def determine_robustness(
     G: GraphLike,
     *,
@@ -188,6 +193,7 @@ def determine_robustness(
     return replace(found, seconds=time.monotonic() - started, graph=graph)
 
 
+@taking_numpy_integers
 def robustness_profile(
     G: GraphLike,
     *,

@@ -12,15 +12,12 @@ import numpy as np
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
 from robustness.figures.marking import Marks
+from robustness.files.places import place_of
 
 __all__ = ["Positions", "positions_for", "positions_in"]
 
 #: Where each node stands, by id.
 Positions = dict[int, tuple[float, float]]
-
-#: Pairs of attributes that hold a place, horizontal first. GraphML of yEd has x and y (y points down there, which
-#: mirrors the picture and nothing else); topology collections have longitude and latitude.
-_PAIRS = (("x", "y"), ("lon", "lat"), ("longitude", "latitude"), ("lng", "lat"))
 
 #: A denser graph looks best on one circle.
 _DENSE = 0.5
@@ -29,35 +26,20 @@ _DENSE = 0.5
 def positions_in(network: Any) -> dict[Hashable, tuple[float, float]] | None:
     """Return the places that a networkx graph's node attributes give, or None unless every node has one.
 
-    Read are ``pos`` (two numbers), ``x`` and ``y``, latitude and longitude in any spelling of case, GEXF's
-    ``viz``/``position`` and GML's ``graphics``.
+    Which attributes are read, :func:`robustness.files.places.place_of` says.
     """
+    if isinstance(network, Digraph):
+        network = network.to_networkx()
     if not hasattr(network, "nodes"):
         return None
     found: dict[Hashable, tuple[float, float]] = {}
     for node, data in network.nodes(data=True):
-        place = _place(data)
+        place = place_of(data)
         if place is None:
             return None
         found[node] = place
     # One point for all is no layout.
     return found if len(found) < 2 or len(set(found.values())) > 1 else None
-
-
-def _place(data: Mapping[str, Any]) -> tuple[float, float] | None:
-    lowered = {str(key).lower(): value for key, value in data.items()}
-    for nested in (lowered.get("viz"), lowered.get("graphics")):
-        if isinstance(nested, Mapping):
-            inner = nested.get("position", nested)
-            if isinstance(inner, Mapping):
-                lowered = {**lowered, **{str(key).lower(): value for key, value in inner.items()}}
-    pos = lowered.get("pos")
-    if isinstance(pos, Sequence) and not isinstance(pos, str) and len(pos) == 2:
-        return _numbers(*pos)
-    for across, up in _PAIRS:
-        if across in lowered and up in lowered:
-            return _numbers(lowered[across], lowered[up])
-    return None
 
 
 def _numbers(across: Any, up: Any) -> tuple[float, float] | None:

@@ -9,15 +9,14 @@ from __future__ import annotations
 import html.entities
 import io
 import re
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Hashable, Iterator
+from typing import Any
 
 from robustness.digraph import Digraph
 from robustness.errors import UnreadableTopology
+from robustness.files.found import Found, Link, Node, ReadingOptions, graph_of
+from robustness.files.places import place_of
 from robustness.files.text import decode_utf8, texts_of, warn_lossy
-
-if TYPE_CHECKING:
-    pass
 
 __all__ = ["decode", "encode"]
 
@@ -32,26 +31,26 @@ _ENTITY = re.compile(r"&(?:#(\d{1,7})|#x([0-9A-Fa-f]{1,6})|(\w+));")
 #: The deepest nesting of lists that is read.
 _DEPTH_LIMIT = 100
 
-_Record = dict[str, int | str]
+_Record = dict[str, Any]
 
 
-def decode(data: bytes) -> Digraph:
+def decode(data: bytes, options: ReadingOptions) -> Digraph:
     """Return the graph of a GML file: nodes are named by ``label`` where each has one of its own, else by ``id``."""
     records, settings = _read(decode_utf8(data))
-    nodes = [record for kind, record, _ in records if kind == "node"]
-    edges = [(record, line) for kind, record, line in records if kind == "edge"]
-    labels = _labels(nodes)
-    links = [tuple(_end(record, end, labels, line) for end in ("source", "target")) for record, line in edges]
+    nodes = [_node(record) for kind, record, _ in records if kind == "node"]
+    known = {node.id for node in nodes}
+    is_drawn = "yfiles" in str(settings.get("creator", "")).lower()
+    links = [_link(record, known, line, is_drawn) for kind, record, line in records if kind == "edge"]
     directed = str(settings.get("directed", 0)) == "1"
-    arcs = links if directed else links + [(v, u) for u, v in links if u != v]
-    distinct = len(set(links) if directed else {frozenset(link) for link in links})
-    notes = [f"read as: {'directed' if directed else 'undirected'}, {len(nodes)} nodes, {distinct} links"]
-    if distinct < len(links):
-        notes.append(f"{len(links) - distinct} parallel ones count once")
-    if any("label" in node for node in nodes) and list(labels) == list(labels.values()):
-        notes.append("labels repeat or lack, so nodes are named by id")
-    warn_lossy(f"{'; '.join(notes)}; GML reads a quoted label as text")
-    return Digraph(labels.values(), arcs, directed=directed)  # type: ignore[arg-type]
+    notes = []
+    headless = sum(link.one_way is False for link in links) if directed and is_drawn else 0
+    if headless:
+        notes.append(f"{headless} drawn without arrow heads run both ways")
+    met = {end for link in links for end in (link.source, link.target)}
+    kept = [node for node in nodes if node.id in met or str(node.attributes.get("isgroup", 0)) != "1"]
+    if len(kept) < len(nodes):
+        notes.append(f"{len(nodes) - len(kept)} groups are boxes round nodes and no nodes")
+    return graph_of(Found(kept, links, directed, notes, loss="GML reads a quoted label as text"), options)
 
 
 def _tokens(text: str) -> Iterator[tuple[int, str, str]]:
@@ -90,23 +89,35 @@ def _read(text: str) -> tuple[list[tuple[str, _Record, int]], _Record]:
         if kind == "open":
             if len(names) >= _DEPTH_LIMIT:
                 raise UnreadableTopology(f"line {line}: lists are nested more than {_DEPTH_LIMIT} deep")
-            target: _Record | None = None
-            if key == "graph" and not names:
-                graphs += 1
-                target = settings
-            elif key in ("node", "edge") and names[:1] == ["graph"] and not {"node", "edge"} & set(names):
-                target = {}
+            graphs += key == "graph" and not names
+            target = _opened(key, names, targets, settings)
+            if target is not None and key in ("node", "edge"):
                 records.append((key, target, line))
             names.append(key)
             targets.append(target)
         elif targets and targets[-1] is not None:
             targets[-1].setdefault(key, _value(kind, token))
+        elif not names and key == "creator":
+            settings[key] = _value(kind, token)
         key = None
     if names or key is not None:
         raise UnreadableTopology(f"line {line}: the file ends inside {names[-1] if names else key!r}: it was cut off")
     if graphs != 1:
         raise UnreadableTopology(f"the file has {graphs} lists 'graph', where one is expected")
     return records, settings
+
+
+def _opened(key: str, names: list[str], targets: list[_Record | None], settings: _Record) -> _Record | None:
+    """Return the record that a list adds to: of the graph, of one node or edge, of its drawing; None for all else."""
+    if key == "graph" and not names:
+        return settings
+    if key in ("node", "edge") and names[:1] == ["graph"] and not {"node", "edge"} & set(names):
+        return {}
+    if key == "graphics" and targets and targets[-1] is not None:
+        drawing: _Record = {}
+        targets[-1].setdefault(key, drawing)
+        return drawing
+    return None
 
 
 def _value(kind: str, token: str) -> int | str:
@@ -121,27 +132,33 @@ def _letter(match: re.Match[str]) -> str:
     return chr(code) if 0 <= code <= 0x10FFFF else match[0]
 
 
-def _labels(nodes: list[_Record]) -> dict[int | str, int | str]:
-    """Return what names each node, by its id."""
-    ids: list[int | str] = []
-    for node in nodes:
-        if "id" not in node:
-            raise UnreadableTopology("a node has no id: give every node one")
-        ids.append(node["id"])
-    if len(set(ids)) < len(ids):
-        raise UnreadableTopology(f"the id {next(i for i in ids if ids.count(i) > 1)} is given twice: keep one")
-    labels = [node.get("label") for node in nodes]
-    if None in labels or len(set(labels)) < len(labels):
-        return dict(zip(ids, ids, strict=True))
-    return dict(zip(ids, (label for label in labels if label is not None), strict=True))
+def _node(record: _Record) -> Node:
+    if "id" not in record:
+        raise UnreadableTopology("a node has no id: give every node one")
+    return Node(record["id"], [key for key in ("label", "name") if key in record], record, place_of(record))
 
 
-def _end(edge: _Record, end: str, labels: dict[int | str, int | str], line: int) -> int | str:
+def _link(edge: _Record, known: set[Hashable], line: int, is_drawn: bool) -> Link:
+    """Return an edge; one that the editor yEd draws without arrow heads runs both ways."""
+    source, target = _end(edge, "source", known, line), _end(edge, "target", known, line)
+    if edge.get("directed") in (0, 1):
+        return Link(source, target, edge["directed"] == 1)
+    drawing = edge.get("graphics")
+    if not is_drawn or not isinstance(drawing, dict):
+        return Link(source, target)
+    heads = [str(drawing.get(end, "none")).lower() != "none" for end in ("sourcearrow", "targetarrow")]
+    if heads == [True, False]:
+        return Link(target, source)
+    return Link(source, target, None if heads == [False, True] else False)
+
+
+def _end(edge: _Record, end: str, known: set[Hashable], line: int) -> Hashable:
     if end not in edge:
         raise UnreadableTopology(f"line {line}: an edge has no {end}")
-    if edge[end] not in labels:
+    if edge[end] not in known:
         raise UnreadableTopology(f"line {line}: an edge joins {edge[end]!r}, which is the id of no node: add the node")
-    return labels[edge[end]]
+    found: Hashable = edge[end]
+    return found
 
 
 def encode(graph: Digraph) -> bytes:
@@ -149,9 +166,10 @@ def encode(graph: Digraph) -> bytes:
     import networkx as nx
 
     # networkx reads these two strings back as an empty tuple and an empty list.
-    texts = texts_of(graph.labels, "GML", is_allowed=lambda text: text not in ("()", "[]"))
+    texts = texts_of(graph.labels, "GML", is_allowed=lambda text: bool(text.strip()) and text not in ("()", "[]"))
     if any(type(label) is not str for label in graph.labels):
         warn_lossy("GML makes every label text")
     stream = io.BytesIO()
-    nx.write_gml(nx.relabel_nodes(graph.to_networkx(), dict(zip(graph.labels, texts, strict=True))), stream)
+    bare = Digraph(texts, ((texts[u], texts[v]) for u, v in graph.arcs()), directed=graph.directed)
+    nx.write_gml(bare.to_networkx(), stream)
     return stream.getvalue()

@@ -1,44 +1,66 @@
-"""Rows of cells in a file: a list of links or a matrix, by what they look like; refused where they may be both."""
+"""Rows of cells in text: links, lists of neighbours or a matrix, by what they look like; refused where in doubt."""
 
 from __future__ import annotations
 
+import re
 import warnings
+from typing import Literal
 
 from robustness.digraph import Digraph, GraphWarning
 from robustness.errors import InvalidGraph, UnreadableTopology
-from robustness.files.edge_list import graph_of_links, links_of
+from robustness.files import matrix_market, pajek
+from robustness.files.adjacency_list import lists_of, neighbours_of, refuse_lists_of_neighbours
+from robustness.files.edge_list import arrows_of, links_of, sections_of, without_counts
+from robustness.files.found import Found, ReadingOptions, graph_of
 from robustness.files.matrix import matrix_of_rows
-from robustness.files.rows import arrows_of, rows_of
+from robustness.files.rows import content_of, rows_of
 from robustness.files.text import texts_of, warn_lossy
 
-__all__ = ["decode_csv", "decode_text", "encode_text"]
+__all__ = ["decode_table", "encode_text"]
 
 _DIRECTED = "# directed"
 
-
-def decode_text(data: bytes) -> Digraph:
-    """Return the graph of an edge list, or of a matrix, in text; labels of an edge list are text."""
-    arrows = arrows_of(data)
-    if arrows is not None:
-        return graph_of_links(*arrows, "arrows")
-    rows = rows_of(data)
-    if not rows.cells:
-        raise UnreadableTopology("an edge list holds at least one edge, and here is none")
-    matrix = matrix_of_rows(rows, in_text=True)
-    return matrix if matrix is not None else links_of(rows)
+Kind = Literal["table", "edge-list", "matrix", "adjacency-list"]
 
 
-def decode_csv(data: bytes) -> Digraph:
-    """Return the graph of a table: a matrix, bare or with labels, or a list of links.
+def decode_table(data: bytes, options: ReadingOptions, kind: Kind = "table", *, in_text: bool = True) -> Digraph:
+    """Return the graph of rows in text: links, lists of neighbours, or a matrix, bare or with labels.
 
-    Separators are commas, semicolons, tabs or spaces. A table that may be a matrix and may be a list of links is
-    refused.
+    Separators are commas, semicolons, tabs or spaces. Rows that may be two things are refused, with the option that
+    says which they are. ``in_text``: two columns are links, as in .txt, and never a matrix of two nodes, as in .csv.
     """
-    rows = rows_of(data)
+    if kind == "table":
+        if re.match(rb"(\xef\xbb\xbf)?%%MatrixMarket", data):
+            return matrix_market.decode(data, options)
+        if re.match(rb"(\xef\xbb\xbf)?\s*\*(vertices|network)\b", data, re.IGNORECASE):
+            return pajek.decode(data, options)
+    content = content_of(data, options.skip_lines)
+    may_be_links = kind in ("table", "edge-list") and options.rows is None
+    found: Found | None = None
+    if may_be_links and options.columns is None:
+        found = arrows_of(content) or sections_of(content)
+    may_be_lists = kind == "table" and options.columns is None
+    if kind == "adjacency-list" or (found is None and may_be_lists and neighbours_of(content) is not None):
+        found = lists_of(content, options)
+    if found is not None:
+        return graph_of(found, options)
+    nodes: list[str] | None = None
+    notes: list[str] = []
+    if may_be_links and options.columns is None:
+        content, nodes, notes = without_counts(content)
+    rows = rows_of(content)
     if not rows.cells:
-        raise UnreadableTopology("an adjacency matrix has at least one row, and here is none")
-    matrix = matrix_of_rows(rows, in_text=False)
-    return matrix if matrix is not None else links_of(rows)
+        raise UnreadableTopology(
+            "an edge list holds at least one edge, and here is none"
+            if in_text
+            else "an adjacency matrix has at least one row, and here is none"
+        )
+    if kind == "matrix" or (options.columns is None and kind == "table" and nodes is None):
+        refuse_lists_of_neighbours(rows, is_asked=kind == "matrix")
+        matrix = matrix_of_rows(rows, options, in_text=in_text, is_asked=kind == "matrix" or options.rows is not None)
+        if matrix is not None:
+            return matrix
+    return graph_of(links_of(rows, options, nodes, notes), options)
 
 
 def encode_text(graph: Digraph) -> bytes:
@@ -75,7 +97,7 @@ def _require_the_same(data: bytes, links: set[tuple[str, str]], directed: bool) 
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", GraphWarning)
-            found = decode_text(data)
+            found = decode_table(data, ReadingOptions())
     except UnreadableTopology as problem:
         raise InvalidGraph(f"an edge list could not be read back ({problem}): write .json instead") from None
     arcs = {(str(found.labels[u]), str(found.labels[v])) for u, v in found.arcs()}

@@ -5,13 +5,12 @@ from __future__ import annotations
 import sys
 import warnings
 from collections.abc import Callable, Iterable
-from typing import Any
 
 from certificates.graph import Label
-from robustness.digraph import Digraph, GraphWarning
+from robustness.digraph import GraphWarning
 from robustness.errors import InvalidGraph, UnreadableTopology
 
-__all__ = ["decode_utf8", "one_line", "parsed_by_networkx", "texts_of", "warn_lossy"]
+__all__ = ["decode_utf8", "one_line", "texts_of", "warn_lossy"]
 
 _LONGEST_MESSAGE = 300
 
@@ -32,24 +31,12 @@ def decode_utf8(data: bytes) -> str:
         raise UnreadableTopology(f"line {line}: byte {data[problem.start]:#04x} is not UTF-8 text") from None
 
 
-def warn_lossy(message: str) -> None:
-    """Warn, at the line that called this package, that the format at hand cannot hold every graph."""
+def warn_lossy(message: str, hint: str = "") -> None:
+    """Warn, at the line that called this package, of what was taken for granted or is lost."""
     level, frame = 1, sys._getframe()
-    while frame.f_back is not None and frame.f_globals["__name__"].startswith(__package__):
+    while frame.f_back is not None and frame.f_globals["__name__"].partition(".")[0] == "robustness":
         level, frame = level + 1, frame.f_back
-    warnings.warn(f"{message}; node-link JSON (.json) keeps everything", GraphWarning, stacklevel=level)
-
-
-def parsed_by_networkx(parse: Callable[[], Any]) -> Digraph:
-    """Return the digraph of the networkx graph that ``parse`` makes; whatever it trips over is a bad file."""
-    try:
-        graph = parse()
-    except (RecursionError, UnreadableTopology):
-        raise
-    except Exception as problem:  # noqa: BLE001 - networkx's readers raise whatever their parsing runs into
-        reason = f"lacks {problem}" if isinstance(problem, KeyError) else str(problem)
-        raise UnreadableTopology(reason or type(problem).__name__) from None
-    return Digraph.from_networkx(graph)
+    warnings.warn(f"{message}{hint}", GraphWarning, stacklevel=level)
 
 
 def texts_of(labels: Iterable[Label], form: str, *, is_allowed: Callable[[str], bool] = lambda text: True) -> list[str]:

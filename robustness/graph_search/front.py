@@ -26,6 +26,7 @@ from robustness.graph_search.results import FindResult, FindVerdict
 from robustness.graph_search.synthesis import synthesise
 from robustness.limits import Limits, Progress
 from robustness.traps.smallest import smallest_trap
+from robustness.whole_numbers import taking_numpy_integers
 
 if TYPE_CHECKING:
     pass
@@ -48,6 +49,7 @@ class _Search:
     symmetry_breaking: bool
 
 
+@taking_numpy_integers
 def find_graph(
     n: int | Iterable[int],
     satisfies: Sequence[Property | str] = (),

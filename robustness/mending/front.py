@@ -16,10 +16,12 @@ from robustness.mending.hitting_set import Search, with_actions
 from robustness.mending.results import Demand, MendResult, MendVerdict
 from robustness.natural_order import natural_key
 from robustness.traps.question import Sets
+from robustness.whole_numbers import taking_numpy_integers
 
 __all__ = ["links_within", "mend", "thin"]
 
 
+@taking_numpy_integers
 def mend(
     G: GraphLike,
     goal: object,
@@ -93,6 +95,7 @@ def mend(
     return _answer(graph, goals, actions, limits, arcs_only, on_improvement)
 
 
+@taking_numpy_integers
 def thin(
     G: GraphLike,
     goal: object,

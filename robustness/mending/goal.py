@@ -9,6 +9,7 @@ from typing import NamedTuple
 from robustness.errors import InvalidParameter
 from robustness.threat_models.models import threat_model_named
 from robustness.traps.question import Question as TrapQuestion
+from robustness.whole_numbers import whole
 
 __all__ = ["Goal", "Part", "goals_of", "parts_of"]
 
@@ -41,6 +42,8 @@ class Goal:
     model: str = "malicious"
 
     def __post_init__(self) -> None:
+        for name in ("r", "s", "survive"):
+            object.__setattr__(self, name, whole(getattr(self, name)))
         if self.r is None and self.survive is None:
             raise InvalidParameter("a goal names r, or how many malicious nodes to survive: give one")
         for name, value, least in (("r", self.r, 0), ("s", self.s, 1), ("survive", self.survive, 0)):

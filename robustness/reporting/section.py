@@ -83,18 +83,16 @@ def section_of(findings: Findings, *, with_pictures: bool) -> Section:
     models = tuple((result.model, result.summary()) for result in findings.table.results)
     if not with_pictures or not 1 <= graph.n <= _LARGEST:
         return Section(models=models, certificate_digest=digest)
-    return Section(_picture(graph, row.weakest, row.network), models, _film(findings.table), digest)
+    return Section(_picture(graph, row.weakest), models, _film(findings.table), digest)
 
 
-def _picture(graph: Digraph, weakest: Mapping[str, Any] | None, name: str) -> bytes:
+def _picture(graph: Digraph, weakest: Mapping[str, Any] | None) -> bytes:
     """Return the network as SVG, the weakest pair marked, where the file places its nodes if it does."""
     from matplotlib import rc_context
 
-    from robustness.figures.positions import positions_of_file
-
     figure = new_figure(7.2, 4.2)
     pair = None if weakest is None else (weakest["S1"], weakest["S2"])
-    draw(graph, pair, pos=positions_of_file(name, graph), ax=figure.subplots())
+    draw(graph, pair, ax=figure.subplots())
     stream = io.BytesIO()
     with rc_context({"svg.hashsalt": "robustness", "svg.fonttype": "none", "font.family": "sans-serif"}):
         figure.savefig(stream, format="svg", metadata={"Date": None})

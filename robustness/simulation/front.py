@@ -18,6 +18,7 @@ from robustness.simulation.scenario import Scenario, Start, random_start
 from robustness.simulation.schedules import Schedule
 from robustness.simulation.update_rules import Rule, UpdateFunction
 from robustness.time_varying import TimeVaryingGraph
+from robustness.whole_numbers import taking_numpy_integers
 
 __all__ = ["most_heard", "simulate"]
 
@@ -30,6 +31,7 @@ _OPTIONS = frozenset(
 )  # fmt: skip
 
 
+@taking_numpy_integers
 def simulate(
     G: GraphLike | TimeVaryingGraph | Callable[[int], GraphLike],
     rule: str | Rule | UpdateFunction = "adp-msr",

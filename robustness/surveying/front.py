@@ -14,13 +14,15 @@ from typing import Any
 
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter, MissingExtra, RobustnessError
-from robustness.files import read_topology
+from robustness.files import ReadingOptions
+from robustness.files.front import read_with
 from robustness.surveying import tables
 from robustness.surveying.networks import expand
 from robustness.surveying.row import STANDINGS, Findings, Gate, Question, Row, measure, unreadable
 from robustness.surveying.state import Journal, key_of
 from robustness.threat_models import THREAT_MODELS
 from robustness.threat_models.models import threat_model_named
+from robustness.whole_numbers import taking_numpy_integers
 
 __all__ = ["Survey", "survey"]
 
@@ -95,6 +97,7 @@ class Survey:
         return f"<table><thead><tr>{names}</tr></thead><tbody>{rows}</tbody></table>"
 
 
+@taking_numpy_integers
 def survey(
     graphs: Iterable[Any] | Mapping[str, GraphLike],
     *,
@@ -108,6 +111,7 @@ def survey(
     certificates: str | os.PathLike[str] | None = None,
     on_row: Callable[[Row, int, int], None] | None = None,
     on_findings: Callable[[Findings], None] | None = None,
+    reading: ReadingOptions | None = None,
 ) -> Survey:
     """Return one row of facts for each of many networks: its size, r*, s, what f it survives, and what a gate says.
 
@@ -135,6 +139,8 @@ def survey(
     on_findings : callable, optional
         Called with each row and the answers it was made from, in the thread that found them; not for rows of errors,
         nor for those that a journal holds.
+    reading : ReadingOptions, optional
+        How files are to be read, as for :func:`robustness.read_topology`.
 
     Returns
     -------
@@ -164,7 +170,7 @@ def survey(
     with Journal(None if state is None else Path(state)) as journal:
 
         def row_of(name: str, graph: Any, left: float | None) -> tuple[str | None, Row]:
-            return _row(name, graph, _within(question, left), question, journal, folder, on_findings)
+            return _row(name, graph, _within(question, left), question, journal, folder, on_findings, reading)
 
         rows = _run(networks, row_of, journal, jobs, total_time_limit, on_row)
     missing = tuple(name for (name, _), row in zip(networks, rows, strict=True) if row is None)
@@ -243,10 +249,11 @@ def _row(
     journal: Journal,
     folder: Path | None,
     on_findings: Callable[[Findings], None] | None,
+    reading: ReadingOptions | None,
 ) -> tuple[str | None, Row]:
     """Return the row of one network, and its key in the journal when it is to be remembered."""
     try:
-        read: Digraph = read_topology(name) if graph is None else as_digraph(graph)
+        read: Digraph = read_with(name, reading or ReadingOptions()) if graph is None else as_digraph(graph)
     except (RobustnessError, OSError) as problem:
         return None, unreadable(name, problem, question.gate)
     key = key_of(name, read, asked)

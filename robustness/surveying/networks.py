@@ -10,7 +10,8 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from robustness.errors import UnreadableTopology
-from robustness.files import FORMATS, topohub_names
+from robustness.files import FORMATS, names_of_graphs, topohub_names
+from robustness.files.front import format_suffix
 from robustness.files.text import one_line
 from robustness.natural_order import natural_key
 
@@ -40,8 +41,8 @@ def expand(paths: Iterable[str | os.PathLike[str]]) -> Sources:
     ----------
     paths : iterable of str or path
         Each a file; a folder, of which every file with a suffix of :data:`robustness.files.FORMATS` is taken, folders
-        in it included, hidden ones not; a pattern with ``*``, ``?`` or ``[``; ``topohub:GROUP/NAME``; or a pattern
-        of such names, for example ``topohub:sndlib/*``.
+        in it included, hidden ones not (a file of many graph6 lines is a network a line); a pattern with ``*``, ``?``
+        or ``[``; ``topohub:GROUP/NAME``; or a pattern of such names, for example ``topohub:sndlib/*``.
 
     Raises
     ------
@@ -74,9 +75,9 @@ def _matches(text: str, notes: list[str]) -> Iterator[str]:
             if os.path.isdir(each):
                 yield from _folder(Path(each), notes)
             else:
-                yield each
+                yield from names_of_graphs(each)
     else:
-        yield text
+        yield from names_of_graphs(text)
 
 
 def _is_pattern(text: str) -> bool:
@@ -103,8 +104,8 @@ def _folder(folder: Path, notes: list[str]) -> Iterator[str]:
         for file in files:
             if file.startswith("."):
                 continue
-            if Path(file).suffix.lower() in FORMATS:
-                found.append(str(Path(where, file)))
+            if format_suffix(file) in FORMATS:
+                found += names_of_graphs(str(Path(where, file)))
             else:
                 passed_over += 1
     if passed_over:

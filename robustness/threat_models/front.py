@@ -15,6 +15,7 @@ from robustness.threat_models.over_time import MODELS_OVER_TIME, JointDecisions,
 from robustness.threat_models.results import ToleranceResult, ToleranceTable
 from robustness.threat_models.verdicts import judge
 from robustness.time_varying import TimeVaryingGraph
+from robustness.whole_numbers import taking_numpy_integers
 
 __all__ = ["tolerance"]
 
@@ -51,6 +52,7 @@ def tolerance(
 ) -> ToleranceTable: ...
 
 
+@taking_numpy_integers
 def tolerance(
     G: GraphLike,
     model: str | None = None,

@@ -23,10 +23,12 @@ from robustness.results import Verdict
 from robustness.time_varying.front import check_joint_robustness
 from robustness.time_varying.results import JointResult
 from robustness.time_varying.sequence import TimeVaryingGraph, as_time_varying
+from robustness.whole_numbers import taking_numpy_integers
 
 __all__ = ["canonical_sequence", "certify_joint", "joint_certificate"]
 
 
+@taking_numpy_integers
 def certify_joint(
     sequence: TimeVaryingGraph | Sequence[GraphLike],
     r: int,

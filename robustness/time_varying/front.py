@@ -32,12 +32,14 @@ from robustness.results import Verdict
 from robustness.time_varying.results import JointResult, Unions, UnionVerdict, Violation
 from robustness.time_varying.sequence import SlidingUnion, TimeVaryingGraph, as_time_varying
 from robustness.time_varying.unions import RULES, TIME_IS_UP, UnionDecider
+from robustness.whole_numbers import taking_numpy_integers
 
 __all__ = ["check_joint_robustness", "joint_curve"]
 
 _PROGRESS_SECONDS = 0.2
 
 
+@taking_numpy_integers
 def check_joint_robustness(
     sequence: TimeVaryingGraph | Sequence[GraphLike],
     r: int,
@@ -147,6 +149,7 @@ def _check(
     )
 
 
+@taking_numpy_integers
 def joint_curve(
     sequence: TimeVaryingGraph | Sequence[GraphLike],
     s: int = 1,

@@ -1,4 +1,4 @@
-"""Reading time-varying graphs: a directory of files, one JSON or JSON Lines document, or a CSV contact trace.
+"""Reading time-varying graphs: a directory of files, one JSON or JSON Lines document, or a contact trace.
 
 ========================  ============================================================================
 source                    holds
@@ -8,7 +8,7 @@ a directory               one topology file a step, in any format of :mod:`robus
 ``.json``, ``-``          ``{"nodes": [label, ...], "directed": true, "period": p or null, "steps": [...]}``; a step
                           is a list of arcs ``[u, v]`` or node-link JSON; a bare list is a list of steps
 ``.jsonl``, ``.ndjson``   a step a line; the first line may be the object above without ``steps``
-``.csv``                  contacts ``time,source,target`` (target hears source), put into bins of ``step`` time
+``.csv``, ``.txt``, ...   contacts ``time,source,target`` (target hears source), put into bins of ``step`` time
 ========================  ============================================================================
 
 A contact trace reads every label as text, as edge lists do. Bins count from the earliest contact; one without
@@ -20,21 +20,23 @@ from __future__ import annotations
 
 import json
 import os
-import stat
-import sys
 from collections.abc import Callable, Hashable, Iterator
 from pathlib import Path
 from typing import Any, BinaryIO
 
 from robustness.digraph import Digraph
 from robustness.errors import InvalidGraph, InvalidParameter, UnreadableTopology
-from robustness.files import FORMATS, SIZE_LIMIT, decode_topology, read_topology
+from robustness.files import FORMATS, ReadingOptions, decode_topology
+from robustness.files.front import format_suffix, read_bytes, read_with
 from robustness.files.text import decode_utf8, one_line
 from robustness.natural_order import natural_key
 from robustness.time_varying.contacts import bin_length, decode_contacts
 from robustness.time_varying.sequence import TimeVaryingGraph
 
-__all__ = ["encode_sequence", "read_sequence"]
+__all__ = ["CONTACT_SUFFIXES", "encode_sequence", "read_sequence"]
+
+#: Files with these suffixes are contact traces.
+CONTACT_SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".edges", ".contacts", ".log")
 
 _StepName = Callable[[int], str]
 
@@ -46,6 +48,7 @@ def read_sequence(
     step: float | str | None = None,
     both_ways: bool = False,
     stdin: BinaryIO | None = None,
+    reading: ReadingOptions | None = None,
 ) -> TimeVaryingGraph:
     """Return the time-varying graph that a path, or ``-`` for JSON on standard input, holds.
 
@@ -62,6 +65,9 @@ def read_sequence(
         For a contact trace: a contact is both arcs.
     stdin : binary stream, optional
         What ``-`` reads; by default ``sys.stdin.buffer``.
+    reading : ReadingOptions, optional
+        How files are to be read, as for :func:`robustness.read_topology`; of a contact trace the columns, for example
+        ``ReadingOptions(columns={"time": 3, "source": 1, "target": 2})``.
 
     Raises
     ------
@@ -72,22 +78,34 @@ def read_sequence(
     """
     source = os.fspath(source)
     name = "standard input" if source == "-" else source
-    suffix = ".json" if source == "-" else Path(source).suffix.lower()
+    suffix = ".json" if source == "-" else format_suffix(source)
     is_directory = source != "-" and os.path.isdir(source)
-    if (step is not None or both_ways) and (is_directory or suffix != ".csv"):
+    reading = reading or ReadingOptions()
+    if (step is not None or both_ways) and (is_directory or suffix not in CONTACT_SUFFIXES):
         raise InvalidParameter(f"step and both_ways go with a contact trace (.csv), not with {one_line(name)}")
+    if not is_directory and suffix not in CONTACT_SUFFIXES and reading != ReadingOptions():
+        raise InvalidParameter(
+            f"the way to read a file goes with contact traces and topology files, not {one_line(name)}"
+        )
     try:
         if is_directory:
-            return _from_directory(Path(source), period)
+            return _from_directory(Path(source), period, reading)
+        if suffix in CONTACT_SUFFIXES:
+            data = read_bytes(source, stdin)
+            return decode_contacts(data, bin_length(step), period, both_ways=both_ways, reading=reading)
         match suffix:
             case ".json":
-                return _from_json(_read(source, name, stdin), period)
+                return _from_json(read_bytes(source, stdin), period)
             case ".jsonl" | ".ndjson":
-                return _from_json_lines(_read(source, name, stdin), period)
-            case ".csv":
-                return decode_contacts(_read(source, name, stdin), bin_length(step), period, both_ways=both_ways)
-        raise UnreadableTopology(f"a sequence is a directory or a .json, .jsonl, .ndjson or .csv file, not {suffix!r}")
+                return _from_json_lines(read_bytes(source, stdin), period)
+        raise UnreadableTopology(
+            f"a sequence is a directory or a .json, .jsonl, .ndjson or contact file ({', '.join(CONTACT_SUFFIXES)}), "
+            "not "
+            f"{suffix!r}"
+        )
     except (UnreadableTopology, InvalidGraph) as problem:
+        if str(problem).startswith(f"{one_line(name)}: "):
+            raise
         raise UnreadableTopology(f"{one_line(name)}: {one_line(str(problem))}") from None
     except RecursionError:
         raise UnreadableTopology(f"{one_line(name)}: is nested too deeply") from None
@@ -104,26 +122,7 @@ def encode_sequence(sequence: TimeVaryingGraph) -> bytes:
     return f'{head}, "steps": [\n{body}\n]}}\n'.encode("ascii")
 
 
-def _read(source: str, name: str, stdin: BinaryIO | None) -> bytes:
-    try:
-        if source == "-":
-            if stdin is None and sys.stdin is None:  # as after `<&-` in a shell
-                raise UnreadableTopology("standard input: is closed")
-            data = (stdin or sys.stdin.buffer).read(SIZE_LIMIT + 1)
-        else:
-            if not stat.S_ISREG(os.stat(source).st_mode):  # opening a pipe that nobody writes to would wait for ever
-                raise UnreadableTopology("is no regular file: pipe it into - instead")
-            with open(source, "rb") as stream:
-                data = stream.read(SIZE_LIMIT + 1)
-    except (OSError, ValueError) as problem:
-        reason = problem.strerror if isinstance(problem, OSError) and problem.strerror else str(problem)
-        raise UnreadableTopology(f"cannot be read: {reason}") from None
-    if len(data) > SIZE_LIMIT:
-        raise UnreadableTopology(f"is larger than {SIZE_LIMIT} bytes, the most that is read")
-    return data
-
-
-def _from_directory(path: Path, period: int | None) -> TimeVaryingGraph:
+def _from_directory(path: Path, period: int | None, reading: ReadingOptions) -> TimeVaryingGraph:
     """Return the sequence of the files of a directory; hidden ones are skipped, others must be topologies."""
     try:
         entries = (entry for entry in path.iterdir() if not entry.name.startswith("."))
@@ -133,11 +132,11 @@ def _from_directory(path: Path, period: int | None) -> TimeVaryingGraph:
     if not files:
         raise UnreadableTopology("a directory of steps holds at least one topology file, and here is none")
     for file in files:
-        if file.suffix.lower() not in FORMATS:
+        if reading.format is None and format_suffix(file.name) not in FORMATS:
             raise UnreadableTopology(
                 f"{file.name}: a step is a topology file ({', '.join(FORMATS)}): move it elsewhere"
             )
-    graphs = (read_topology(file) for file in files)
+    graphs = (read_with(file, reading) for file in files)
     return TimeVaryingGraph(graphs, period, step_name=lambda k: f"step {k} ({files[k].name})")
 
 

@@ -58,6 +58,8 @@ class TimeVaryingGraph:
     """
 
     labels: tuple[Label, ...]
+    #: How a reader took its file, in one line; empty for a sequence that came from none.
+    read_as: str = ""
     #: Whether some step came from a directed graph; shown to the user, never used in mathematics.
     directed: bool
     period: int | None

@@ -59,7 +59,13 @@ def test_json_key_by_key(r: int, code: int, target: Path) -> None:
     graph = rb.Digraph.from_networkx(WHEEL)
     assert found == {
         "schema": "robustness/certify/1",
-        "graph": {"nodes": 5, "arcs": 16, "directed": False, "sha256": graph.sha256},
+        "graph": {
+            "nodes": 5,
+            "arcs": 16,
+            "directed": False,
+            "sha256": graph.sha256,
+            "read_as": "undirected, 5 nodes, 8 links",
+        },
         "verdict": "robust" if code == 0 else "not-robust",
         "r": r,
         "s": 1,

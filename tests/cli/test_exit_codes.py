@@ -64,6 +64,7 @@ def test_only_known_verdicts_have_a_code() -> None:
         (errors.InvalidGraph("x"), 3),
         (errors.InvalidParameter("x"), 2),
         (errors.UnreadableTopology("x"), 3),
+        (errors.MissingTopology("x"), 3),
         (errors.MissingExtra("x"), 2),
         (errors.Undecided("x"), 30),
         (errors.InternalError("x"), 1),
@@ -98,7 +99,8 @@ def test_exceptions_end_in_one_line_and_their_code(
 
 
 def test_every_error_class_is_covered_above() -> None:
-    ours = {errors.RobustnessError, *errors.RobustnessError.__subclasses__()}
+    kinds = errors.RobustnessError.__subclasses__()
+    ours = {errors.RobustnessError, *kinds, *(kind for each in kinds for kind in each.__subclasses__())}
     assert {getattr(errors, name) for name in errors.__all__} == ours
 
 

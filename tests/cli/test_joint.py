@@ -70,7 +70,7 @@ def test_json_key_by_key() -> None:
     seconds, stats, shorter = (found.pop(key) for key in ("seconds", "stats", "shorter_fails"))
     assert found == {
         "schema": "robustness/joint/1",
-        "sequence": {"nodes": 5, "steps": 5, "period": 5, "arcs": 20, "directed": True},
+        "sequence": {"nodes": 5, "steps": 5, "period": 5, "arcs": 20, "directed": True, "read_as": None},
         "verdict": "robust",
         "r": 2,
         "s": 1,

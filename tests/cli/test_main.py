@@ -17,6 +17,7 @@ from click.testing import CliRunner
 import robustness as rb
 from cli import choices, main
 from cli.output import Console, ProgressLine, set_text
+from robustness.files import FORMAT_NAMES
 from robustness.limits import Progress
 
 ROOT = Path(__file__).parents[2]
@@ -65,6 +66,7 @@ class TestCommands:
 
     def test_algorithm_names_are_those_of_the_registry(self) -> None:
         assert choices.ALGORITHM_NAMES == ("auto", *rb.ALGORITHMS)
+        assert choices.FORMAT_NAMES == tuple(FORMAT_NAMES)
 
     def test_version(self) -> None:
         outcome = CliRunner().invoke(main.robustness, ["--version"])

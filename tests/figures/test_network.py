@@ -20,7 +20,6 @@ from robustness.errors import InvalidParameter
 from robustness.figures.marking import marks_of
 from robustness.figures.network import draw_to_file
 from robustness.figures.placement import positions_in
-from robustness.figures.positions import positions_of_file
 from robustness.simulation import find_attack
 from robustness.traps import find_trap
 
@@ -188,12 +187,12 @@ class TestPlaces:
         else:
             getattr(nx, f"write_{suffix}")(graph, path)
         read = rb.read_topology(path)
-        places = positions_of_file(path, read)
+        places = positions_in(read)
         assert places is not None
         assert [places[label] for label in read.labels] == [(0.0, 1.0), (1.0, 2.0), (2.0, 3.0)]
 
     def test_of_a_collection(self) -> None:
-        places = positions_of_file("topohub:sndlib/abilene", rb.read_topology("topohub:sndlib/abilene"))
+        places = positions_in(rb.read_topology("topohub:sndlib/abilene"))
         assert places is not None
         assert len(set(places.values())) == 12
 

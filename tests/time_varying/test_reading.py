@@ -6,6 +6,7 @@ import io
 import json
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import networkx as nx
 import pytest
@@ -13,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import robustness as rb
-from robustness.files import encode_topology, write_topology
+from robustness.files import ReadingOptions, encode_topology, write_topology
 from robustness.time_varying import TimeVaryingGraph, encode_sequence, read_sequence
 from robustness.time_varying.contacts import bin_length, decode_contacts
 from tests.time_varying.brute_force import all_arcs
@@ -108,6 +109,7 @@ def test_written_and_read_again(steps: list[list[tuple[int, int]]], period: int 
     assert (again.labels, again.period, arcs_of(again)) == (sequence.labels, sequence.period, arcs_of(sequence))
 
 
+@pytest.mark.filterwarnings("ignore:read as")
 class TestContacts:
     def test_bins_count_from_the_earliest_contact(self, tmp_path: Path) -> None:
         text = "time,source,target\n25,b,c\n20,a,b\n20.5,b,a\n44,c,a\n"
@@ -126,10 +128,67 @@ class TestContacts:
         assert arcs_of(decode_contacts(data, Fraction(1))) == [[["a", "b"]], [["b", "c"]]]
 
     def test_without_a_header_the_first_three_columns(self) -> None:
-        assert arcs_of(decode_contacts(b'-1,1,2,x\n0,"2, left",1\n', Fraction(1))) == [
-            [["1", "2"]],
-            [["2, left", "1"]],
+        assert arcs_of(decode_contacts(b'-1,1,2 x,y\n0,"2, left",1 x,y\n', Fraction(1))) == [
+            [["1", "2 x"]],
+            [["2, left", "1 x"]],
         ]
+
+    @pytest.mark.parametrize(
+        ("name", "text", "options"),
+        [
+            ("x.txt", "0\ta\tb\n1\tb\tc\n", {}),
+            ("x.dat", "20 a b 1A 1B\n21 b c 1A 1B\n", {}),
+            ("x.dat", "20 454 640 MP MP\n40 1 939 2BIO3 2BIO3\n40 3 9 2BIO3 MP\n", {}),
+            ("x.csv", "Source,Target,Timestamp\na,b,0\nb,c,1\n", {}),
+            ("x.csv", "# timestamp,user_a,user_b,rssi\n0,a,b,-70\n1,b,c,-71\n1,a,-1,0\n", {}),
+            ("x.csv", "t,i,j\n0,a,b\n1,b,c\n", {}),
+            ("x.csv", "1,2,1600000000\n2,3,1600000001\n", {"columns": {"source": 1, "target": 2, "time": 3}}),
+            ("x.csv", "a,b,w,when\na,b,1,0\nb,c,1,1\n", {"columns": {"source": "a", "target": "b", "time": "when"}}),
+            ("x.txt", "0.0 CONN a b up\n1.0 CONN a b down\n1.0 CONN b c up\n1.5 CONN b c down\n", {}),
+            ("x.csv", "start,end,source,target\n0,1,a,b\n1,2,b,c\n", {}),
+        ],
+    )
+    def test_traces_as_they_are_shipped(self, tmp_path: Path, name: str, text: str, options: dict[str, Any]) -> None:
+        step = 20 if text.startswith("20 454") else None
+        sequence = read_sequence(written(tmp_path, name, text), step=step, reading=ReadingOptions(**options))
+        assert len(sequence) == 2
+        if step is None:
+            first, second = arcs_of(sequence)
+            a, b, c = sequence.labels
+            assert [a, b] in first
+            assert [b, c] in second
+
+    def test_a_contact_that_lasts(self, tmp_path: Path) -> None:
+        text = "start,end,source,target\n0,3,a,b\n1,1,b,c\n2,2.5,c,a\n"
+        sequence = read_sequence(written(tmp_path, "x.csv", text))
+        assert [len(arcs) for arcs in arcs_of(sequence)] == [1, 2, 2]
+        backwards = written(tmp_path, "y.csv", "start,end,source,target\n3,0,a,b\n")
+        with pytest.raises(rb.UnreadableTopology, match="line 2: a contact ends at 0 before it starts at 3"):
+            read_sequence(backwards)
+
+    def test_a_connection_log_keeps_what_is_up_to_the_end(self, tmp_path: Path) -> None:
+        text = "0 CONN a b up\n2 CONN b c up\n3 CONN b c down\n4 CONN c a up\n"
+        sequence = read_sequence(written(tmp_path, "x.log", text))
+        assert [len(arcs) // 2 for arcs in arcs_of(sequence)] == [1, 1, 2, 1, 1]
+        assert not sequence.directed
+
+    @pytest.mark.parametrize(
+        ("text", "message"),
+        [
+            ("0,1,1\n1,0,1\n1,1,0\n", r"may be a matrix and no contacts: .*--columns time=1"),
+            (
+                "1,2,1600000000\n2,3,1600000001\n",
+                r"may be time,source,target and may be source,target,time: .*--columns",
+            ),
+            ("5,2,1600000000\n2,3,1600000001\n", r"may be source,target,time: .*--columns"),
+            ("1,2,3\n", r"may be source,target,time: .*--columns"),
+            ("1,2,5,0\n2,3,5,1\n", r"of 4 columns of numbers any may be the time"),
+            ("source,target,weight\na,b,1\n", r"no column is time; there are source, target, weight"),
+        ],
+    )
+    def test_what_may_be_two_things_is_asked(self, tmp_path: Path, text: str, message: str) -> None:
+        with pytest.raises(rb.UnreadableTopology, match=message):
+            read_sequence(written(tmp_path, "x.csv", text))
 
     def test_both_ways(self, tmp_path: Path) -> None:
         sequence = read_sequence(written(tmp_path, "contacts.csv", "0,a,b\n"), both_ways=True)
@@ -141,15 +200,15 @@ class TestContacts:
         [
             ("", "at least one contact"),
             ("time,source,target\n", "at least one contact"),
-            ("0,a,b\n1,a\n", r"line 2: a contact is time,source,target, not 2 column"),
+            ("0,a,b\n1,a\n", r"line 2: has 2 columns, but line 1 has 3"),
             ("time,source,target\nnoon,a,b\n", r"line 2: the time is a decimal number, not 'noon'"),
-            ("t,source,target\n0,a,b\n", r"line 1: the time is a decimal number, not 't'"),
+            ("x,source,target\n0,a,b\n", r"line 1: no column is time; there are source, target, x: .*--columns time=3"),
             ("0,a,b\n\nnan,a,b\n", r"line 3: the time is a decimal number, not 'nan'"),
             ("inf,a,b\n", r"line 1: the time is a decimal number, not 'inf'"),
             ("1e999999999,a,b\n", r"line 1: the time is a decimal number"),
             ("1e-999999999,a,b\n", r"line 1: the time is a decimal number"),
-            ("0,a,\n", r"line 1: a contact has a source and a target"),
-            ('0,a,b\n0,"a,b\n', r"line 2: unexpected end of data"),
+            ("0,a,\n1,b,c\n", r"line 1: a contact has a source and a target"),
+            ('0,a,b\n0,"a,b\n', r"line 2: .*unexpected end of data"),
             ("0,a,b\n1e12,b,a\n", r"more than 1000000 steps"),
         ],
     )
@@ -237,7 +296,7 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
 
 
 def test_a_file_that_is_too_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robustness.time_varying.reading.SIZE_LIMIT", 20)
+    monkeypatch.setattr("robustness.files.front.SIZE_LIMIT", 20)
     with pytest.raises(rb.UnreadableTopology, match="larger than 20 bytes"):
         read_sequence(written(tmp_path, "steps.json", COMPACT))
 

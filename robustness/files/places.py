@@ -1,0 +1,44 @@
+"""Where the attributes of a node place it, in the words of the editors and collections that write them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+__all__ = ["place_of"]
+
+#: Pairs of attributes that hold a place, horizontal first. GraphML of yEd has x and y (y points down there, which
+#: mirrors the picture and nothing else); topology collections have longitude and latitude.
+_PAIRS = (("x", "y"), ("lon", "lat"), ("longitude", "latitude"), ("lng", "lat"))
+
+
+def place_of(attributes: Mapping[str, Any]) -> tuple[float, float] | None:
+    """Return the place that a node's attributes give, or None.
+
+    Read are ``pos`` (two numbers, or DOT's ``"x,y"``), ``x`` and ``y``, longitude and latitude in any spelling of case,
+    GEXF's ``viz``/``position`` and GML's ``graphics``.
+    """
+    lowered = {str(key).lower(): value for key, value in attributes.items()}
+    for nested in (lowered.get("viz"), lowered.get("graphics"), lowered.get("position")):
+        if isinstance(nested, Mapping):
+            inner = nested.get("position", nested)
+            if isinstance(inner, Mapping):
+                lowered = {**lowered, **{str(key).lower(): value for key, value in inner.items()}}
+    pos = lowered.get("pos")
+    if isinstance(pos, str):
+        pos = pos.rstrip("!").split(",")
+    if isinstance(pos, Sequence) and len(pos) == 2:
+        return _numbers(*pos)
+    for across, up in _PAIRS:
+        if across in lowered and up in lowered:
+            return _numbers(lowered[across], lowered[up])
+    return None
+
+
+def _numbers(across: Any, up: Any) -> tuple[float, float] | None:
+    try:
+        x, y = float(across), float(up)
+    except (TypeError, ValueError):
+        return None
+    return (x, y) if math.isfinite(x) and math.isfinite(y) else None
