@@ -75,6 +75,9 @@ UNDIRECTED = {
     # JSON.
     "cytoscape-list.json": json.dumps({"elements": [{"data": {"id": x}} for x in "abcd"]
                            + [{"data": {"id": f"{u}{v}", "source": u, "target": v}} for u, v in LINKS]}),
+    "cytoscape-bare.json": json.dumps([{"data": {"id": x}} for x in "abcd"] + [{"data": {"source": u, "target": v}} for u, v in LINKS]),
+    "cytoscape-nodes.json": json.dumps({"nodes": [{"data": {"id": x}} for x in "abcd"],
+                            "edges": [{"data": {"source": u, "target": v}} for u, v in LINKS]}),
     "jgf.json": json.dumps({"graph": {"directed": False, "nodes": {x: {"label": x} for x in "abcd"},
                 "edges": [{"source": u, "target": v} for u, v in LINKS]}}),
     "jgf-1.json": json.dumps({"graphs": [{"directed": False, "nodes": [{"id": x} for x in "abcd"],
@@ -126,6 +129,7 @@ UNDIRECTED = {
     "subgraph.dot": "strict graph { a -- {b; c; d} subgraph cluster_1 { node [shape=box]; b -- c; } b:port -- d }",
     "both.gv": "digraph { edge [dir=both]; " + "".join(f"{u} -> {v}; " for u, v in LINKS) + "}",
     "lists.net": '*Vertices 4\n1 "a" 0.1 0.2\n2 "b" 0.3 0.4\n3 "c"\n4 "d"\n*Edgeslist\n1 2 3 4\n2 3 4\n',
+    "two-modes.net": '*Vertices 4 2\n1 "a"\n2 "b"\n3 "c"\n4 "d"\n*Edges\n1 2\n1 3\n1 4\n2 3\n2 4\n',
     "matrix.net": '*Vertices 4\n1 "a"\n2 "b"\n3 "c"\n4 "d"\n*Matrix\n0 1 1 1\n1 0 1 1\n1 1 0 0\n1 1 0 0\n*Partition x\n1\n',
 }  # fmt: skip
 
@@ -187,6 +191,10 @@ def test_the_ring_keeps_its_direction(name: str) -> None:
         ("x.net", "*Vertices 2\n*Foo\n", "'\\*foo' is no heading"),
         ("x.mtx", "%%MatrixMarket matrix coordinate pattern general\n2 3 1\n1 2\n", "square, not 2 x 3"),
         ("x.mtx", "%%MatrixMarket matrix array real general\n99999999 99999999\n", "larger than what is read"),
+        ("x.csv", "Id,Label\nann,Ann\nbob,Bob\n", "columns of a table of nodes"),
+        ("x.csv", "hero,comic\nann,x\nann,y\nbob,x\n", "'hero' and 'comic' are ends of no other link"),
+        ("x.csv", "ann,ann\nbob,bob\n", "2 of 2 rows join a node with itself"),
+        ("x.graphml", "<graphml><graph>/edge&gt;<node id='1'/></graph></graphml>", "the text '/edge>' stands where"),
         ("x.g6", "A_\nA_\n", "FILE#1"),
         ("x.graphml", "<graphml><graph><hyperedge/></graph></graphml>", "hyperedge"),
     ],

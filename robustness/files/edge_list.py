@@ -182,6 +182,12 @@ def links_of(
         if not row[source] or not row[target]:
             raise UnreadableTopology(f"line {line}: one end of the link is empty")
     own = _types(head, body, lines)
+    loops = sum(row[source] == row[target] for row in body)
+    if 2 * loops > len(body) > 1:
+        raise UnreadableTopology(
+            f"{loops} of {len(body)} rows join a node with itself, as in a table of nodes: say where the ends of links "
+            "stand with --columns source=1,target=2"
+        )
     links = [Link(row[source], row[target], one_way) for row, one_way in zip(body, own, strict=True)]
     told.append(f"links between columns {source + 1} and {target + 1}")
     if head is not None and rows.may_have_head:
@@ -205,7 +211,16 @@ def _head(rows: Rows, options: ReadingOptions) -> tuple[list[str] | None, list[l
     is_text = not any(map(is_number, first[:2])) and bool(rest) and all(all(map(is_number, row[:2])) for row in rest)
     if is_text:
         return follows
+    if (
+        set(first[:2]) & {"id", "node", "node_id", "nodes", "name", "label"}
+        and not any(names)
+        and labels.isdisjoint(first)
+    ):
+        raise UnreadableTopology(
+            f"line {rows.lines[0]}: {', '.join(first[:3])} are the columns of a table of nodes: read the table of links"
+        )
     if not all(names) or not labels.isdisjoint(first):  # then they name nodes
+        _refuse_unknown_names(rows)
         return None, rows.cells, rows.lines
     words = [name for end in names for name in end]
     stems = {re.sub(r"\d+$", "", label) for label in labels}
@@ -217,6 +232,20 @@ def _head(rows: Rows, options: ReadingOptions) -> tuple[list[str] | None, list[l
             "is names, --skip-lines 0 if it is a link"
         )
     return follows if any(len(name) > 2 for name in words) else (None, rows.cells, rows.lines)
+
+
+def _refuse_unknown_names(rows: Rows) -> None:
+    """Refuse a first line of words that are no ends of any other link, where links meet: it may name the columns."""
+    first, rest = rows.cells[0][:2], rows.cells[1:]
+    ends = [cell for row in rest for cell in row[:2]]
+    if any(map(is_number, first)) or len(set(ends)) == len(ends) or first[0] == first[1]:
+        return
+    if not set(first).isdisjoint(ends):
+        return
+    raise UnreadableTopology(
+        f"line {rows.lines[0]}: {first[0]!r} and {first[1]!r} are ends of no other link, so they may be names of "
+        "columns: --skip-lines 1 if they are, --skip-lines 0 if they are a link"
+    )
 
 
 def columns_of(

@@ -259,12 +259,16 @@ def _names(found: Found, options: ReadingOptions, notes: list[str]) -> dict[Hash
         if labels == ids:
             break
         if all(map(_is_name, labels)) and len(set(labels)) == len(labels):
-            notes.append(f"nodes are named by their {key}")
+            notes.append(f"nodes are named by their {_KEY_WORDS.get(key, key)}")
             return dict(zip(ids, labels, strict=True))
     else:
         if any(_is_name(node.attributes.get(key)) for node in found.nodes for key in keys):
             notes.append("labels repeat or lack, so nodes are named by id")
     return dict(zip(ids, ids, strict=True))
+
+
+#: What a key is called that no author of a file ever sees.
+_KEY_WORDS = {"nodelabel": "label"}
 
 
 def _names_asked_for(found: Found, wanted: str) -> dict[Hashable, Hashable]:

@@ -22,8 +22,8 @@ __all__ = ["decode", "encode"]
 
 _TOKEN = re.compile(
     r"""(?P<space>\s+|\#[^\n]*)|(?P<text>"[^"]*")|(?P<open>\[)|(?P<close>\])
-    |(?P<number>[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(?![\w.]))|(?P<key>[A-Za-z_][\w.]*)""",
-    re.VERBOSE,
+    |(?P<number>[+-](?:inf|nan)\b|[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(?![\w.]))|(?P<key>[A-Za-z_][\w.]*)""",
+    re.VERBOSE | re.IGNORECASE,
 )
 
 _ENTITY = re.compile(r"&(?:#(\d{1,7})|#x([0-9A-Fa-f]{1,6})|(\w+));")

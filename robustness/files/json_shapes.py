@@ -3,7 +3,7 @@
 =======================================  =================================================================
 shape                                    written by
 =======================================  =================================================================
-``elements`` of ``data``                 Cytoscape
+``elements`` of ``data``, or these alone Cytoscape
 ``graph`` with ``nodes`` and ``edges``   JSON Graph Format, nodes as an object or a list
 ``nodes`` and ``adjacency``              networkx, adjacency data
 ``nodes`` with ``key``                   graphology, sigma.js
@@ -33,7 +33,8 @@ __all__ = ["found_in"]
 def found_in(document: Any) -> Found | None:
     """Return what a document of another shape than node-link JSON holds; None for node-link JSON and all else."""
     if isinstance(document, list):
-        return _list_of_links(document)
+        is_cytoscape = bool(document) and all(isinstance(row, dict) and _has_data(row) for row in document)
+        return _cytoscape({"elements": document}) if is_cytoscape else _list_of_links(document)
     if not isinstance(document, dict):
         return None
     for is_this, read in _SHAPES:
@@ -62,7 +63,7 @@ def _first(document: Mapping[str, Any], key: str) -> Mapping[str, Any]:
 
 
 def _cytoscape(document: Mapping[str, Any]) -> Found:
-    elements = document["elements"]
+    elements = document.get("elements", document)
     if isinstance(elements, list):
         elements = {
             "nodes": [row for row in elements if isinstance(row, dict) and not _is_edge(row)],
@@ -79,6 +80,12 @@ def _cytoscape(document: Mapping[str, Any]) -> Found:
         data = row.get("data", {})
         links.append(_link(data, f"edges[{i}].data"))
     return Found(_without_boxes(nodes, links), links, _said(document))
+
+
+def _has_data(row: Mapping[str, Any]) -> bool:
+    """Return whether an object is an element of Cytoscape."""
+    data = row.get("data")
+    return isinstance(data, dict) and ("id" in data or "source" in data) and "id" not in row and "source" not in row
 
 
 def _is_edge(row: Mapping[str, Any]) -> bool:
@@ -325,7 +332,7 @@ def _is_plain(document: Mapping[str, Any]) -> bool:
 _Shape = tuple[Callable[[Mapping[str, Any]], bool], Callable[[Mapping[str, Any]], Found]]
 
 _SHAPES: tuple[_Shape, ...] = (
-    (lambda document: "elements" in document, _cytoscape),
+    (lambda document: "elements" in document or _has_data(_first(document, "nodes")), _cytoscape),
     (lambda document: "graphs" in document, _json_graph_format),
     (lambda document: isinstance(document.get("graph"), dict) and "nodes" in document["graph"], _json_graph_format),
     (lambda document: "adjacency" in document, _adjacency_data),

@@ -43,7 +43,7 @@ def decode(data: bytes, options: ReadingOptions) -> Digraph:
     ]
     reader.links += reader.matrix_links()
     both_ways = all(link.one_way is False for link in reader.links)
-    notes = [f"{name} is not the graph and left out" for name in reader.left_out]
+    notes = reader.notes + [f"{name} is not the graph and left out" for name in reader.left_out]
     if reader.relations > 1:
         notes.append(f"{reader.relations} relations joined")
     found = Found(nodes, reader.links, not both_ways, notes, loss="Pajek reads every label as text")
@@ -61,6 +61,7 @@ class _Reader:
         self.relations = 0
         self.row = 0
         self.matrix: dict[tuple[int, int], None] = {}
+        self.notes: list[str] = []
         self.read: Callable[[int, list[str]], None] | None = None
 
     def take(self, number: int, text: str) -> None:
@@ -79,8 +80,12 @@ class _Reader:
         if heading.startswith("*vertices"):
             if self.count is not None:
                 raise UnreadableTopology(f"line {number}: a second *Vertices: keep one network a file")
-            if not rest or not rest[0].isdigit() or len(rest) > 1:
-                raise UnreadableTopology(f"line {number}: *Vertices is followed by one number, not {' '.join(rest)!r}")
+            if not 1 <= len(rest) <= 2 or not all(cell.isascii() and cell.isdigit() for cell in rest):
+                raise UnreadableTopology(
+                    f"line {number}: *Vertices is followed by their number, not {' '.join(rest)!r}"
+                )
+            if len(rest) == 2:
+                self.notes.append(f"two modes, of which the first is vertices 1..{rest[1]}")
             self.count = int(rest[0][:18])
             if self.count > NODE_LIMIT:
                 raise UnreadableTopology(f"line {number}: announces {rest[0]} nodes, and at most {NODE_LIMIT} are read")

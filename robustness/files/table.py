@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
+from collections import Counter
 from typing import Literal
 
 from robustness.digraph import Digraph, GraphWarning
@@ -69,14 +70,14 @@ def encode_text(graph: Digraph) -> bytes:
     if not graph.arc_count:
         raise InvalidGraph("an edge list cannot hold a graph without edges: write .json instead")
     directed = graph.directed or not graph.is_symmetric
+    pairs = [(u, v) for u, v in graph.arcs() if directed or u < v]
+    met = Counter(end for pair in pairs for end in pair)
+    # A first link that meets no other one would read as names of the columns.
+    pairs.sort(key=lambda pair: met[pair[0]] + met[pair[1]] == 2)
+    heard = set(met)
+    links = {(texts[u], texts[v]) for u, v in pairs}
     lines = [_DIRECTED] if directed else []
-    heard: set[int] = set()
-    links: set[tuple[str, str]] = set()
-    for u, v in graph.arcs():
-        heard.update((u, v))
-        if directed or u < v:
-            links.add((texts[u], texts[v]))
-            lines.append(f"{_quoted(texts[u])}\t{_quoted(texts[v])}")
+    lines += [f"{_quoted(texts[u])}\t{_quoted(texts[v])}" for u, v in pairs]
     data = ("\n".join(lines) + "\n").encode()
     _require_the_same(data, links, directed)
     lost = graph.n - len(heard)

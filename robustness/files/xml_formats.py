@@ -303,6 +303,11 @@ class _Inspector:
     def text(self, data: str) -> None:
         if self.reading is not None:
             self.reading[1].append(data)
+        elif self.open[-1] in ("graph", "nodes", "edges", "graphml", "gexf") and data.strip():
+            raise UnreadableTopology(
+                f"line {self.parser.CurrentLineNumber}: the text {data.strip()[:30]!r} stands where nodes and edges "
+                "are expected: the file is damaged"
+            )
 
     def finish_text(self) -> None:
         """Give what was read to its owner."""
