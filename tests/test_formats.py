@@ -5,9 +5,12 @@ Every case holds the same graph, K4 without the link c-d ("diamond"), on the lab
 
 from __future__ import annotations
 
+import enum
 import gzip
 import io
+import ipaddress
 import json
+import uuid
 import warnings
 from pathlib import Path
 from typing import Any
@@ -331,6 +334,46 @@ class TestArrays:
         stream = io.BytesIO()
         np.savez(stream, A=nx.to_numpy_array(nx.cycle_graph(5)))
         assert read(stream.getvalue(), ".npz").arc_count == 10
+
+
+class Colour(enum.Enum):
+    RED = 1
+
+
+class TestLabels:
+    def test_any_label_with_a_text_that_stays(self) -> None:
+        labels = [
+            1,
+            "1",
+            1.5,
+            Colour.RED,
+            ipaddress.ip_address("10.0.0.1"),
+            frozenset({"b", "a"}),
+            (0, 2.5),
+            uuid.UUID(int=1),
+        ]
+        graph = Digraph(labels, [(label, 1) for label in labels[1:]])
+        assert {str(label) for label in graph.labels} == {
+            "1", "1.5", "Colour.RED", "10.0.0.1", "{a, b}", "(0, '2.5')", "00000000-0000-0000-0000-000000000001"
+        }  # fmt: skip
+        assert graph.n == 8
+        assert graph.labels_of(graph.ids([Colour.RED, frozenset({"a", "b"})])) == {"Colour.RED", "{a, b}"}
+        path = nx.Graph([(1.5, Colour.RED), (Colour.RED, frozenset({1, 2}))])
+        assert not rb.is_r_robust(path, 2)
+
+    def test_texts_that_are_the_same_or_change(self) -> None:
+        with pytest.raises(rb.InvalidGraph, match=r"the nodes 1.5 and '1.5' have the same text '1.5': relabel one"):
+            Digraph([1.5, "1.5"], [])
+        with pytest.raises(rb.InvalidGraph, match="object has none: give it __str__"):
+            Digraph([object()], [])
+
+    def test_numpy_integers_are_integers(self) -> None:
+        for kind in (np.int8, np.int64, np.uint32):
+            assert rb.is_rs_robust(DIAMOND, kind(2), s=kind(1))
+            assert rb.check_rs_robustness(DIAMOND, r=kind(2)).r == 2
+            assert rb.mend(nx.path_graph(3), rb.Goal(r=kind(2))).links
+        with pytest.raises(rb.InvalidParameter, match="r is an integer"):
+            rb.is_r_robust(DIAMOND, np.float64(2))
 
 
 def test_packed_files_and_many_graphs(tmp_path: Path) -> None:

@@ -25,10 +25,17 @@ __all__ = ["decode", "encode"]
 #: pydot's parser goes down into brackets by recursion, and its time grows with them.
 _DEPTH_LIMIT = 30
 
+#: The most letters that are read: pydot takes about a minute for them.
+_SIZE_LIMIT = 1_000_000
+
 
 def decode(data: bytes, options: ReadingOptions) -> Digraph:
     """Return the graph of a DOT file."""
     text = decode_utf8(data)
+    if len(text) > _SIZE_LIMIT:
+        raise UnreadableTopology(
+            f"is longer than {_SIZE_LIMIT} letters, the most that is read of DOT: write .json instead"
+        )
     depth = 0
     for number, line in enumerate(text.split("\n"), 1):
         depth += line.count("{") - line.count("}")
