@@ -22,6 +22,9 @@ __all__ = ["SCHEMA", "command"]
 
 SCHEMA = "robustness/attack-result/1"
 
+#: An attack repeats after two steps: a few are as good as many.
+_STEPS = 12
+
 
 @click.command("attack")
 @graph_argument
@@ -36,7 +39,13 @@ SCHEMA = "robustness/attack-result/1"
 @click.option("-T", "--sampling-period", "period", type=float, help="With these three: is agreement promised ...")
 @click.option("--alpha", type=float, help="... for vehicles with this gain ...  [default: 1.5/T]")
 @click.option("--sigma", type=float, help="... whose kept weights add up to at most this?  [default: weights 1/d]")
-@click.option("--steps", type=click.IntRange(min=1), default=1000, show_default=True, help="How long it is played.")
+@click.option(
+    "--steps",
+    type=click.IntRange(min=1),
+    default=_STEPS,
+    show_default=True,
+    help="How long it is played; it repeats after two.",
+)
 @click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE", help="Write it.")
 @click.option("--expect", type=click.Choice(("agreement", "split")), help="Exit with 10 when it ends otherwise.")
 @query_options(algorithm=True)
@@ -68,16 +77,17 @@ def command(
     with ProgressLine(console) as line:
 
         def work() -> Finding:
-            return find_attack(
+            found = find_attack(
                 graph, f, model, algorithm=query.algorithm, T=period, alpha=alpha, sigma=sigma, **query.effort(line)
             )
+            if found.attack is not None:
+                _carry_out(found.attack, steps)
+            return found
 
         found = query.wait_for(work, line)
-    if found.attack is not None:
-        _carry_out(found.attack, steps)
-        if output is not None:
-            replace_file(output, (json.dumps(found.attack.as_dict(), indent=1) + "\n").encode())
-            console.talk(f"wrote {output}")
+    if found.attack is not None and output is not None:
+        replace_file(output, (json.dumps(found.attack.as_dict(), indent=1) + "\n").encode())
+        console.talk(f"wrote {output}")
     if query.as_json:
         attack = None if found.attack is None else found.attack.as_dict()
         content = {"f": f, "model": model, "outcome": found.outcome, "reason": found.reason, "attack": attack}

@@ -91,8 +91,9 @@ def _attack(graph: Digraph, path: Path) -> Any:
     """Return the attack in a file, its evidence checked anew."""
     from robustness.errors import InvalidParameter, UnreadableTopology
     from robustness.simulation.attacks import Attack
+    from robustness.whole_file import read_text
 
     try:
-        return Attack.from_dict(graph, json.loads(path.read_text(encoding="utf-8")))
+        return Attack.from_dict(graph, json.loads(read_text(path)))
     except (OSError, ValueError, RecursionError, InvalidParameter) as problem:
         raise UnreadableTopology(f"{path}: not an attack of this graph as 'attack -o' writes it: {problem}") from None

@@ -66,6 +66,8 @@ class ExitCode(enum.IntEnum):
                 return cls.BAD_INPUT
             case InvalidParameter() | MissingExtra():
                 return cls.USAGE
+            case RuntimeError() if str(problem) == "can't start new thread":  # more --jobs than the system allows
+                return cls.USAGE
             case OSError() if problem.filename is not None:  # inputs are read by the library, so this is an output
                 return cls.USAGE
             case _:

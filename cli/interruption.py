@@ -1,9 +1,9 @@
-"""Ctrl-C and time limits at any moment, also while a compiler or a solver is at work.
+"""Ctrl-C and time limits at any moment, also while a solver is at work.
 
-Python raises KeyboardInterrupt in the main thread, wherever that happens to be. Inside a just-in-time compiler's
-callback it is swallowed and turns up as another error; inside compiled code it waits. So the main thread does
-nothing but wait, long work has a thread of its own, and after Ctrl-C that thread is left behind with the process.
-The library keeps time limits itself; but it cannot stop the compiler, which takes seconds when a kernel is first used.
+Python raises KeyboardInterrupt in the main thread, wherever that happens to be. Inside a library's callback it may be
+swallowed and turn up as another error; inside compiled code it waits. So the main thread does nothing but wait, long
+work has a thread of its own, and after Ctrl-C that thread is left behind with the process. The library keeps time
+limits itself, but it cannot stop what is not its own, a solver for instance.
 """
 
 from __future__ import annotations

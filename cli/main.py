@@ -79,6 +79,10 @@ class CommandTable(click.Group):
             warnings.simplefilter("once", UserWarning)  # the base of GraphWarning, whose import is not needed here
             try:
                 return super().invoke(ctx)
+            except click.UsageError as problem:
+                from robustness.printable import printable
+
+                raise click.UsageError(printable(problem.format_message(), "\n"), problem.ctx) from None
             except (click.ClickException, click.exceptions.Exit, click.Abort):
                 raise
             except (Exception, KeyboardInterrupt) as problem:  # noqa: BLE001 - the one place that maps them all
@@ -98,6 +102,8 @@ def _report(console: Console, problem: BaseException) -> ExitCode:
         case ExitCode.INTERNAL_ERROR:
             hint = "" if console.is_verbose else "; -v shows where"
             console.error(f"internal error, not a verdict: {type(problem).__name__}: {problem}{hint}")
+        case _ if isinstance(problem, RuntimeError) and code == ExitCode.USAGE:
+            console.error(f"error: {problem}: give fewer --jobs")
         case _ if isinstance(problem, OSError) and problem.filename is not None:
             console.error(f"error: cannot write {os.fsdecode(problem.filename)}: {problem.strerror}")
         case _:

@@ -219,8 +219,10 @@ class _Line:
     def tick(self) -> None:
         """Draw the line anew."""
         if self._is_shown:
+            from robustness.printable import printable
+
             spent = time.monotonic() - self._started
-            click.echo(f"\r\x1b[K{f'{spent:.0f} s, {self._text}'[:100]}", err=True, nl=False)
+            click.echo(f"\r\x1b[K{printable(f'{spent:.0f} s, {self._text}')[:100]}", err=True, nl=False)
 
     def wipe(self) -> None:
         """Take the line away."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from .choices import ALGORITHM_NAMES, FORMAT_NAMES
-from .output import Console
+from .output import Console, write_help
 
 if TYPE_CHECKING:
     from robustness.digraph import Digraph
@@ -201,6 +201,16 @@ _color_option = click.option(
 )
 
 
+def _print_help(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
+    if wanted and not ctx.resilient_parsing:
+        write_help(ctx.get_help())
+        ctx.exit()
+
+
+# Not click's own, which knows no full disk.
+_help_option = click.help_option("-h", "--help", callback=_print_help)
+
+
 def talk_options(command: _Command) -> _Command:
-    """Add -q, -v and --color, which may stand before or after the command's name."""
-    return _quiet_option(_verbose_option(_color_option(command)))
+    """Add -q, -v, --color and --help, which may stand before or after the command's name."""
+    return _quiet_option(_verbose_option(_color_option(_help_option(command))))

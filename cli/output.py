@@ -1,9 +1,14 @@
-"""What the user sees: results on standard output, talk and progress on standard error, colour where it is wanted."""
+"""What the user sees: results on standard output, talk and progress on standard error, colour where it is wanted.
+
+What is shown holds names of files, labels and values that others have chosen. Nothing of it steers the terminal: a
+character that is not printable stands as its escape. Colours are the toolkit's own, and stand only before the text.
+"""
 
 from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import sys
 import time
@@ -20,10 +25,13 @@ if TYPE_CHECKING:
     from robustness.limits import Progress
     from robustness.results import Bounds
 
-__all__ = ["Console", "ProgressLine", "graph_document", "pass_console", "set_document", "set_text"]
+__all__ = ["Console", "ProgressLine", "graph_document", "pass_console", "set_document", "set_text", "write_help"]
 
 #: A set of more labels than this is cut in text; --json and -v print it whole.
 _LABELS_SHOWN = 60
+
+#: A verdict or the kind of a message, as ``click.style`` colours it: the one place for sequences that steer a terminal.
+_HEAD = re.compile(r"(?:\x1b\[\d{1,2}m)+[\w -]+:\x1b\[0m")
 
 
 @dataclass(slots=True)
@@ -35,7 +43,7 @@ class Console:
 
     def result(self, text: str) -> None:
         """Print a result."""
-        _write(text, to_error=False)
+        _write(_harmless(text), to_error=False)
 
     def document(self, schema: str, content: Mapping[str, Any]) -> None:
         """Print a result as one JSON document whose first key is ``schema``."""
@@ -44,7 +52,7 @@ class Console:
     def talk(self, text: str) -> None:
         """Say something that is no result; -q silences it."""
         if not self.is_quiet:
-            _write(text, to_error=True)
+            _write(_harmless(text), to_error=True)
 
     def warn(self, text: str) -> None:
         """Say what the user should know about the input; -q silences it."""
@@ -53,7 +61,10 @@ class Console:
     def error(self, text: str) -> None:
         """Say why the command ends."""
         kind, colon, rest = text.partition(":")
-        _write(click.style(kind + colon, fg="red") + rest if colon else text, to_error=True)
+        _write(
+            click.style(_harmless(kind + colon), fg="red") + _harmless(rest) if colon else _harmless(text),
+            to_error=True,
+        )
 
 
 pass_console = click.make_pass_decorator(Console, ensure=True)
@@ -71,7 +82,7 @@ class ProgressLine:
         self._shown = is_terminal and not console.is_quiet and os.environ.get("TERM") != "dumb"
         self._started = self._drawn = time.monotonic()
         self._text = ""
-        self._parts: tuple[str, ...] = ("starting (the first time, the search is compiled)",)
+        self._parts: tuple[str, ...] = ("starting",)
 
     def __enter__(self) -> ProgressLine:
         return self
@@ -83,7 +94,7 @@ class ProgressLine:
 
     def __call__(self, progress: Progress) -> None:
         """Show how far the search is."""
-        self._parts = (f"{progress.nodes:,} nodes visited", progress.note)
+        self._parts = (f"{progress.nodes:,} nodes visited", _harmless(progress.note))
         self.tick()
 
     def note_bounds(self, bounds: Bounds) -> None:
@@ -123,6 +134,20 @@ def set_text(labels: Iterable[Label], *, whole: bool = False) -> str:
     from robustness.showing import listed_in_words
 
     return listed_in_words(set_document(labels), None if whole else _LABELS_SHOWN)
+
+
+def _harmless(text: str) -> str:
+    """Return text that cannot steer a terminal, but for the colours of its head."""
+    from robustness.printable import printable
+
+    head = _HEAD.match(text)
+    begin = head.end() if head else 0
+    return text[:begin] + printable(text[begin:], "\n")
+
+
+def write_help(text: str) -> None:
+    """Print what click has to say of a command."""
+    _write(text, to_error=False)
 
 
 def _write(text: str, *, to_error: bool, end: str = "\n") -> None:

@@ -26,12 +26,14 @@ _COUNTEREXAMPLE = "counterexample.json"
 
 def challenge_certificate(console: Console, query: Query, asked: Simulation) -> ExitCode:
     """Put a certificate to the test."""
+    from certificates.envelope import MAX_CERTIFICATE_BYTES
     from robustness.simulation.validate import validate_certificate
+    from robustness.whole_file import read_at_most
 
     graph = load_graph(str(asked.source))
     place = Path(str(asked.certificate))
     try:
-        evidence = place.read_bytes()
+        evidence = read_at_most(place, MAX_CERTIFICATE_BYTES)
     except OSError as problem:
         console.error(f"error: cannot read {place}: {problem.strerror}")
         return ExitCode.BAD_INPUT

@@ -79,6 +79,7 @@ def _recorded(asked: Simulation) -> Attack | tuple[Scenario, Start] | None:
     from robustness.errors import InvalidParameter
     from robustness.simulation.attacks import Attack
     from robustness.simulation.replay import read_run
+    from robustness.whole_file import read_text
 
     if asked.replay is not None:
         return read_run(asked.replay)
@@ -86,7 +87,7 @@ def _recorded(asked: Simulation) -> Attack | tuple[Scenario, Start] | None:
         return None
     graph = _network(asked).union
     try:
-        document = json.loads(asked.attack_file.read_text(encoding="utf-8"))
+        document = json.loads(read_text(asked.attack_file))
     except (OSError, ValueError, RecursionError) as problem:
         raise InvalidParameter(f"an attack file is JSON as 'attack -o' writes it: {problem}") from None
     return Attack.from_dict(graph, document)

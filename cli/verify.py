@@ -63,10 +63,10 @@ def command(
     one asked for answers too. Exit code 0: it proves its claim, and the claim answers the question. 10: it does not. 3:
     a file is malformed. Without a question the claim is printed, and said to be compared with none.
     """
-    from certificates.__main__ import read_at_most
     from certificates.envelope import MAX_CERTIFICATE_BYTES
     from certificates.questions import Question, comparison
     from robustness.errors import UnreadableTopology
+    from robustness.whole_file import read_at_most
 
     faces, bound = FACES[model] if model is not None else (None, None)
     question = Question(expect, r, s, window, f, faces, bound)
@@ -114,10 +114,10 @@ def _verified_formally(source: str, certificate: bytes) -> Claim:
 
 def _sequence_bytes(source: str) -> bytes:
     """Return the canonical bytes of a sequence: those of the file itself, or of what it says in another format."""
-    from certificates.__main__ import read_at_most
     from certificates.joint import MAX_SEQUENCE_BYTES, SEQUENCE_FORMAT
     from robustness.time_varying import canonical_sequence
     from robustness.time_varying.reading import read_sequence
+    from robustness.whole_file import read_at_most
 
     path = Path(source)
     if path.is_file():

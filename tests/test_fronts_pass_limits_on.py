@@ -110,6 +110,7 @@ def test_the_search_gets_all_of_it(name: str, monkeypatch: pytest.MonkeyPatch) -
     # Nothing is settled before the search.
     for ladder in ("robustness.decision.ladder", "robustness.decision.certification"):
         monkeypatch.setattr(f"{ladder}.settle", lambda *_: None)
+    monkeypatch.setattr("robustness.decision.ladder.TRANSFORM_NODES", 1)
     for room in ("traps.ladder", "threat_models.decisions"):
         monkeypatch.setattr(f"robustness.{room}.settle_trap", lambda *_: None)
     monkeypatch.setattr(subset_search, "decide", listening(subset_search.decide))

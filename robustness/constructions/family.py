@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Family", "KnownRobustness", "Parameter", "require"]
 
+#: No family is built with a greater number: a graph of more nodes fits no memory as a networkx graph.
+_MOST = 10_000_000
+
 
 @dataclass(frozen=True, slots=True)
 class KnownRobustness:
@@ -127,6 +130,9 @@ class Family:
             )
         for name, value in given.items():
             require(known[name].accepts(value), f"{name} is of type {known[name].kind}", **{name: value})
+            numbers = value if isinstance(value, tuple | list) else (value,)
+            most = max((abs(number) for number in numbers if type(number) is int), default=0)
+            require(most <= _MOST or name == "seed", f"{name} is at most {_MOST}", **{name: value})
         return {name: given.get(name, parameter.default) for name, parameter in known.items()}
 
 

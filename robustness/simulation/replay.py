@@ -23,6 +23,7 @@ from robustness.simulation import adversaries, motion, schedules
 from robustness.simulation.outcome import Outcome
 from robustness.simulation.scenario import Scenario, Start
 from robustness.simulation.topology import Topology
+from robustness.whole_file import read_text
 
 __all__ = ["SCHEMA", "decode_run", "encode_run", "read_run", "write_run"]
 
@@ -89,7 +90,7 @@ def write_run(path: Path, scenario: Scenario, start: Start, outcome: Outcome | N
 def read_run(path: Path) -> tuple[Scenario, Start]:
     """Return the run in a file; see :func:`decode_run`. An unreadable file is an :class:`InvalidParameter` error."""
     try:
-        document = json.loads(path.read_text(encoding="utf-8"))
+        document = json.loads(read_text(path))
     except (OSError, ValueError, RecursionError) as problem:
         raise InvalidParameter(f"a recorded run is a JSON file, but {path} is not readable as one: {problem}") from None
     return decode_run(document)

@@ -18,7 +18,9 @@ from typing import IO, Self
 from robustness.digraph import Digraph
 from robustness.errors import UnreadableTopology
 from robustness.files.text import one_line
+from robustness.limits import UNLIMITED
 from robustness.surveying.row import Question, Row
+from robustness.whole_file import read_at_most
 
 __all__ = ["Journal", "key_of"]
 
@@ -79,7 +81,7 @@ class Journal:
     def _read(self, path: Path) -> int:
         """Take over what ``path`` holds; return the length of its whole lines."""
         try:
-            data = path.read_bytes()
+            data = read_at_most(path, UNLIMITED)
         except FileNotFoundError:
             return 0
         whole = 0

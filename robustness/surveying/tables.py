@@ -11,6 +11,7 @@ from types import MappingProxyType
 from typing import Any
 from xml.etree import ElementTree as ET
 
+from robustness.printable import printable
 from robustness.surveying.row import Row
 
 __all__ = ["TABLES", "cells", "flat", "text"]
@@ -63,7 +64,7 @@ def _interval(low: int | None, high: int | None) -> str:
 
 def text(rows: Sequence[Row], models: Sequence[str]) -> str:
     """Return a table for a terminal: names to the left, numbers to the right."""
-    table = [[_printable(cell) for cell in line] for line in cells(rows, models)]
+    table = [[printable(cell) for cell in line] for line in cells(rows, models)]
     widths = [max(len(line[k]) for line in table) for k in range(len(table[0]))]
     is_word = [name in ("network", "gate", "note") for name in table[0]]
     lines = (
@@ -74,11 +75,6 @@ def text(rows: Sequence[Row], models: Sequence[str]) -> str:
         for line in table
     )
     return "\n".join(lines)
-
-
-def _printable(cell: str) -> str:
-    """Return text that cannot steer a terminal: what is not printable stands as its escape."""
-    return "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in cell)
 
 
 def _csv(rows: Sequence[Row], models: Sequence[str]) -> str:
@@ -138,7 +134,7 @@ def _markdown(rows: Sequence[Row], models: Sequence[str]) -> str:
 def _markdown_cell(cell: str) -> str:
     if cell == "---":
         return cell
-    return re.sub(r"([\\`*_{}\[\]<>()#+!|~$&-])", r"\\\1", _printable(cell))
+    return re.sub(r"([\\`*_{}\[\]<>()#+!|~$&-])", r"\\\1", printable(cell))
 
 
 def _text_lines(rows: Sequence[Row], models: Sequence[str]) -> str:

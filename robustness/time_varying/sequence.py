@@ -116,8 +116,12 @@ class TimeVaryingGraph:
         """
         frame = Digraph(nodes, [])
         codes = []
+        without_arcs = np.empty(0, np.int64)
         for k, arcs in enumerate(steps):
             pairs = list(arcs)
+            if not pairs:  # most steps of many traces
+                codes.append(without_arcs)
+                continue
             if any(len(pair) != 2 for pair in pairs):
                 raise InvalidGraph(f"{step_name(k)}: an arc is a pair (u, v) of nodes, and one is not")
             codes.append(_encode(pairs, step_name(k), frame.index, directed))

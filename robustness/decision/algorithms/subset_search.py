@@ -136,10 +136,15 @@ class _Search:
 
     def run(self) -> Answer:
         """Search to the end, a pair or a limit; Ctrl-C stops all threads and is passed on."""
-        helpers = [threading.Thread(target=self._work, args=(k,), daemon=True) for k in range(1, self.limits.jobs)]
+        helpers: list[threading.Thread] = []
         try:
-            for helper in helpers:
-                helper.start()
+            for k in range(1, self.limits.jobs):
+                helper = threading.Thread(target=self._work, args=(k,), daemon=True)
+                try:
+                    helper.start()
+                except RuntimeError:  # the system has no more threads to give: those that run are enough
+                    break
+                helpers.append(helper)
             self._work(0)
         finally:
             with self.lock:
