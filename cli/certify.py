@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -11,6 +12,9 @@ from .interruption import Overrun
 from .options import graph_argument, load_graph
 from .output import Console, ProgressLine, graph_document
 from .query import Query, query_options
+
+if TYPE_CHECKING:
+    from robustness.results import RobustnessResult
 
 __all__ = ["SCHEMA", "command"]
 
@@ -54,6 +58,7 @@ def command(
     verify', which needs nothing but Python. It has been verified before it is written. Exit code 0 robust, 10 not
     robust, 30 undecided (nothing is written).
     """
+    from robustness.decision.bounds import quick_bounds
     from robustness.decision.certification import certify
     from robustness.files.writing import replace_file, require_different_files
     from robustness.results import RobustnessResult, Verdict
@@ -61,6 +66,7 @@ def command(
     proofs = [output.with_name(output.name + suffix) for suffix in (".opb", ".pbp")] if proof_format == "veripb" else []
     require_different_files([source], [output, canonical, *proofs])
     graph = load_graph(source)
+    is_interrupted = False
     with ProgressLine(console) as line:
 
         def work() -> RobustnessResult:
@@ -68,8 +74,10 @@ def command(
 
         try:
             result = query.wait_for(work, line)
-        except Overrun:
-            result = RobustnessResult(Verdict.UNDECIDED, r, s, stats={"reason": "the time limit was reached"})
+        except (KeyboardInterrupt, Overrun) as stop:
+            is_interrupted = isinstance(stop, KeyboardInterrupt)
+            reason = "interrupted" if is_interrupted else "the time limit was reached"
+            result = RobustnessResult(Verdict.UNDECIDED, r, s, bounds=quick_bounds(graph), stats={"reason": reason})
     written: dict[str, str] = {}
     if result.certificate is not None:
         replace_file(output, result.certificate)
@@ -93,18 +101,30 @@ def command(
                 "r": r,
                 "s": s,
                 "algorithm": result.algorithm,
+                "bounds": None if result.bounds is None else result.bounds.as_dict(),
                 "bytes": len(result.certificate or b""),
                 "files": written,
                 "seconds": round(result.seconds, 6),
             },
         )
     else:
-        console.result(f"{result.summary()}: {source}, {graph.n} nodes, {graph.arc_count} arcs")
-        if result.certificate is None:
-            console.result(f"nothing is certified: {result.stats.get('reason', 'a limit was reached')}")
-        elif proof_format == "veripb" and result.verdict is Verdict.NOT_ROBUST:
-            console.talk("no VeriPB proof: that a graph is not robust is shown by the pair of sets in the certificate")
-        for kind, path in written.items():
-            size = f" ({len(result.certificate or b''):,} bytes, verified)" if kind == "certificate" else ""
-            console.result(f"{kind:<12}{path}{size}")
+        _tell(console, result, f"{source}, {graph.n} nodes, {graph.arc_count} arcs", written, proof_format)
+    if is_interrupted:
+        console.error("interrupted: what is printed holds, nothing else is claimed")
+        ctx.exit(ExitCode.INTERRUPTED)
     ctx.exit(ExitCode.of_verdict(result.verdict.value))
+
+
+def _tell(console: Console, result: RobustnessResult, network: str, written: dict[str, str], proof_format: str) -> None:
+    """Print the answer, what is known where there is none, and the files."""
+    console.result(f"{result.summary()}: {network}")
+    if result.certificate is None:
+        console.result(f"nothing is certified: {result.stats.get('reason', 'a limit was reached')}")
+        if result.bounds is not None:
+            low, high = result.bounds.lower, result.bounds.upper
+            console.result(f"r* >= {low.value:<4} {low.reason}\nr* <= {high.value:<4} {high.reason}")
+    elif proof_format == "veripb" and result.verdict.value == "not-robust":
+        console.talk("no VeriPB proof: that a graph is not robust is shown by the pair of sets in the certificate")
+    for kind, path in written.items():
+        size = f" ({len(result.certificate or b''):,} bytes, verified)" if kind == "certificate" else ""
+        console.result(f"{kind:<12}{path}{size}")

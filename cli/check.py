@@ -189,7 +189,7 @@ def _report_on(graph: Digraph, result: RobustnessResult) -> Report:
         result.verdict.value,
         result.r,
         result.s,
-        result.bounds or _trivial_bounds(graph),
+        result.bounds or _quick_bounds(graph),
         result.s_bounds,
         result.witness,
         result.profile,
@@ -201,7 +201,7 @@ def _report_on(graph: Digraph, result: RobustnessResult) -> Report:
 def _stopped(graph: Digraph, r: int, s: int, query: Query, line: ProgressLine, stop: BaseException) -> Report:
     """Return what is proven when the search itself cannot tell any more."""
     is_interrupted = isinstance(stop, KeyboardInterrupt)
-    bounds = line.bounds or _trivial_bounds(graph)
+    bounds = line.bounds or _quick_bounds(graph)
     return Report(
         graph,
         "undecided",
@@ -215,10 +215,10 @@ def _stopped(graph: Digraph, r: int, s: int, query: Query, line: ProgressLine, s
     )
 
 
-def _trivial_bounds(graph: Digraph) -> Bounds:
-    from robustness.results import Bounds
+def _quick_bounds(graph: Digraph) -> Bounds:
+    from robustness.decision.bounds import quick_bounds
 
-    return Bounds.trivial(graph)
+    return quick_bounds(graph)
 
 
 def _lines(report: Report, source: str, *, whole: bool) -> Iterator[str]:

@@ -14,11 +14,12 @@ from typing import Any
 
 from robustness.answers import Question
 from robustness.decision.algorithms import require_algorithm, require_options
+from robustness.decision.bounds import quick_bounds
 from robustness.decision.determination import determine, profile
 from robustness.decision.ladder import decide
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.limits import Limits, Progress
-from robustness.results import Bounds, RobustnessResult
+from robustness.results import Bounds, RobustnessResult, Verdict
 from robustness.whole_numbers import taking_numpy_integers
 
 __all__ = [
@@ -121,7 +122,10 @@ def check_rs_robustness(
     require_algorithm(algorithm)
     require_options("check_rs_robustness", algorithm, options)
     question = Question.about(G, r, s)
-    return check_within(*question, Limits.of(time_limit, jobs, seed, progress), algorithm, options)
+    result = check_within(*question, Limits.of(time_limit, jobs, seed, progress), algorithm, options)
+    if result.verdict is Verdict.UNDECIDED and result.bounds is not None:
+        return replace(result, bounds=result.bounds.met_with(quick_bounds(question.graph)))
+    return result
 
 
 def check_within(

@@ -117,7 +117,9 @@ def simulate(
     """
     unknown = sorted(set(options) - _OPTIONS)
     if unknown:
-        raise InvalidParameter(f"simulate has no option {unknown[0]!r}: there are {', '.join(sorted(_OPTIONS))}")
+        raise TypeError(
+            f"simulate() got an unexpected keyword argument {unknown[0]!r}: there are {', '.join(sorted(_OPTIONS))}"
+        )
     if tau is not None and isinstance(schedule, Schedule):
         raise InvalidParameter("tau belongs to a schedule by name: a Schedule has its own")
     when = schedule_from(schedule, None if tau is None else integer("tau", tau, 0))

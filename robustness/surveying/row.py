@@ -175,7 +175,8 @@ def measure(name: str, graph: Digraph, question: Question, certificates: Path | 
     started = time.monotonic()
     limits = Limits.of(question.time_limit, seed=question.seed)
     try:
-        found = determine_robustness(graph, **limits.keywords())
+        # Half of the time: what r* and s leave goes to the models, and what they prove is asked of every one of them.
+        found = determine_robustness(graph, **limits.share(0.5 if question.models else 1.0).keywords())
         models = {model: tolerance(graph, model, **limits.keywords()) for model in question.models}
         table = ToleranceTable(graph, tuple(models.values()))
         standing = _standing(graph, question, found, table, limits)

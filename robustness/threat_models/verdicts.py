@@ -75,8 +75,8 @@ def _attacks(decisions: Decisions, threat: ThreatModel) -> dict[int, Finding]:
     for f in range(low, high + 1):
         if f not in found:
             found[f] = decisions.attack(threat.question(f), 1 / (1 + high - f) if high > f else 1.0)
-        if found[f].exists:
-            break
+        if found[f].exists or (found[f].exists is None and decisions.limits.expired()):
+            break  # what a limit left open is told as undecided
     return found
 
 

@@ -5,7 +5,7 @@ lower bound is a theorem whose hypotheses were checked in integers; every upper 
 that was checked against the definition. Nothing here is a guess, whatever the budget.
 """
 
-from robustness.decision.bounds.interval import all_bounds, bounds
+from robustness.decision.bounds.interval import all_bounds, bounds, quick_bounds
 from robustness.decision.bounds.shortcuts import settle
 
-__all__ = ["all_bounds", "bounds", "settle"]
+__all__ = ["all_bounds", "bounds", "quick_bounds", "settle"]

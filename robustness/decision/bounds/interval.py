@@ -14,7 +14,7 @@ from robustness.digraph import Digraph
 from robustness.limits import Steps
 from robustness.results import Bound, Bounds, Witness
 
-__all__ = ["all_bounds", "bounds"]
+__all__ = ["all_bounds", "bounds", "quick_bounds"]
 
 #: Up to this many nodes exact search is tried before growth: it settles most of what growth would.
 _SMALL = 256
@@ -65,6 +65,20 @@ def bounds(
         if lower.value == upper.value and (upper.witness is not None or graph.n < 2):
             break
     return Bounds(lower, upper)
+
+
+#: What a limit that has passed still allows: a few milliseconds.
+_QUICK_STEPS = 4_000_000
+
+
+def quick_bounds(graph: Digraph) -> Bounds:
+    """Return what is known of r* in milliseconds: what an answer that a limit stopped is told with."""
+    if graph.n > _SMALL:
+        return Bounds.trivial(graph)
+    found = bounds(graph, steps=Steps(_QUICK_STEPS), thorough=False)
+    if 2 <= graph.n <= MOST_SPECTRAL_NODES:
+        found = found.met_with(Bounds(spectral_bound(graph), found.upper))
+    return found
 
 
 def all_bounds(graph: Digraph, *, seed: int = 0, steps: Steps | None = None) -> tuple[list[Bound], list[Bound]]:

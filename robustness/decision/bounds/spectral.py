@@ -24,6 +24,7 @@ fraction-free elimination in Python integers decides, up to 64 nodes; otherwise 
 from __future__ import annotations
 
 import math
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import numpy.typing as npt
@@ -39,6 +40,8 @@ MOST_SPECTRAL_NODES = 150
 _NODES = 600
 _EXACT_NODES = 64
 _EXACT_FLOAT = 2**53
+#: What is known of graphs that are in use: every r and s ask for the same number.
+_KNOWN: WeakKeyDictionary[Digraph, Spectral | None] = WeakKeyDictionary()
 #: Below this the float lambda_2 is taken to be equal to the even integer, so that nothing is attempted.
 _TIE = 1e-8
 
@@ -52,6 +55,12 @@ def spectral_evidence(graph: Digraph) -> Spectral | None:
     >>> spectral_evidence(Digraph.from_networkx(nx.complete_graph(7)))
     Spectral(r=4, mu=6)
     """
+    if graph not in _KNOWN:
+        _KNOWN[graph] = _evidence(graph)
+    return _KNOWN[graph]
+
+
+def _evidence(graph: Digraph) -> Spectral | None:
     if not 2 <= graph.n <= _NODES or graph.arc_count == 0:
         return None
     laplacian = _mutual_laplacian(graph)
