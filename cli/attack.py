@@ -37,7 +37,7 @@ _STEPS = 12
     help="One lie for all; different lies (byzantine); or delays that show two faces. -local: F around every node.",
 )
 @click.option("-T", "--sampling-period", "period", type=float, help="With these three: is agreement promised ...")
-@click.option("--alpha", type=float, help="... for vehicles with this gain ...  [default: 1.5/T]")
+@click.option("--alpha", type=float, help="... for nodes with this gain ...  [default: 1.5/T]")
 @click.option("--sigma", type=float, help="... whose kept weights add up to at most this?  [default: weights 1/d]")
 @click.option(
     "--steps",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -89,7 +90,7 @@ def _print_list(console: Console, as_json: bool) -> None:
             for each in family.parameters
         )
         console.result(f"{family.name:<{width}}  {flags}")
-        console.result(f"{'':<{width}}  {family.summary.replace('``', '')} {family.value}.")
+        console.result(f"{'':<{width}}  {_plain(family.summary)} {family.value}.")
 
 
 #: How --list and --help call values of each type.
@@ -131,7 +132,7 @@ def _family_command(family: Family) -> click.Command:
         params=[*options, output],
         callback=build_one,
         help=(inspect.getdoc(family.build) or "").replace("``", ""),
-        short_help=family.summary,
+        short_help=_plain(family.summary),
     )
     decorated: click.Command = json_option(talk_options(made))
     return decorated
@@ -186,3 +187,8 @@ def write_graph(graph: nx.Graph, output: str) -> None:
         replace_file(output, encode_with_attributes(graph))
     else:
         write_topology(graph, output)
+
+
+def _plain(words: str) -> str:
+    """Return a docstring's sentence without its markup."""
+    return re.sub(r" \(:\w+:`[^`]*`\)|``", "", words)

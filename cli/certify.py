@@ -23,8 +23,8 @@ SCHEMA = "robustness/certify/1"
 
 @click.command("certify")
 @graph_argument
-@click.option("-r", type=click.IntRange(min=1), required=True, help="Is GRAPH (R,S)-robust?")
-@click.option("-s", type=click.IntRange(min=1), default=1, show_default=True, help="1 is r-robustness.")
+@click.option("-r", type=click.IntRange(min=1), metavar="R", required=True, help="Is GRAPH (R,S)-robust?")
+@click.option("-s", type=click.IntRange(min=1), metavar="S", default=1, show_default=True, help="1 is r-robustness.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="Where the certificate goes.")
 @click.option(
     "--canonical",
@@ -127,4 +127,4 @@ def _tell(console: Console, result: RobustnessResult, network: str, written: dic
         console.talk("no VeriPB proof: that a graph is not robust is shown by the pair of sets in the certificate")
     for kind, path in written.items():
         size = f" ({len(result.certificate or b''):,} bytes, verified)" if kind == "certificate" else ""
-        console.result(f"{kind:<12}{path}{size}")
+        console.talk(f"wrote {path}{size}")

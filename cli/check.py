@@ -70,8 +70,8 @@ class Report:
 
 @click.command("check")
 @graph_argument
-@click.option("-r", type=click.IntRange(min=0), help="Decide whether GRAPH is (R,S)-robust.")
-@click.option("-s", type=click.IntRange(min=1), help="With -r; 1 unless given, which is r-robustness.")
+@click.option("-r", type=click.IntRange(min=0), metavar="R", help="Decide whether GRAPH is (R,S)-robust.")
+@click.option("-s", type=click.IntRange(min=1), metavar="S", help="With -r; 1 unless given, which is r-robustness.")
 @click.option(
     "--s-timeout",
     type=Seconds(),
@@ -106,7 +106,7 @@ def command(
     if query.as_json:
         console.document(SCHEMA, report.document())
     else:
-        console.result("\n".join(_lines(report, source, whole=console.is_verbose)))
+        console.answer(_lines(report, source, whole=console.is_verbose))
     if report.is_interrupted:
         console.error("interrupted: what is printed holds, nothing else is claimed")
         ctx.exit(ExitCode.INTERRUPTED)

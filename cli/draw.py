@@ -22,8 +22,14 @@ __all__ = ["command"]
 
 @click.command("draw")
 @graph_argument
-@click.option("-r", "r", type=click.IntRange(min=0), help="Decide R-robustness, and mark the two sets that refute it.")
-@click.option("-s", "s", type=click.IntRange(min=1), help="With -r: (R,S)-robustness.  [default: 1]")
+@click.option(
+    "-r",
+    "r",
+    type=click.IntRange(min=0),
+    metavar="R",
+    help="Decide R-robustness, and mark the two sets that refute it.",
+)
+@click.option("-s", "s", type=click.IntRange(min=1), metavar="S", help="With -r: (R,S)-robustness.  [default: 1]")
 @click.option(
     "--attack",
     "attack_file",

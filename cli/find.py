@@ -64,7 +64,7 @@ def command(
     fewest_edges: bool,
     output: str | None,
 ) -> None:
-    r"""Search for a graph that has, or has not, given properties.
+    """Search for a graph that has, or has not, given properties.
 
     \b
     PROPERTY is 2-robust  (2,2)-robust  3-connected  4-regular  trap(1)

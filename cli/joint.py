@@ -72,8 +72,10 @@ class Report:
 @click.command("joint")
 @click.argument("source", metavar="SEQ")
 @reading_options
-@click.option("-r", type=click.IntRange(min=0), required=True, help="Jointly (R,S)-robust?")
-@click.option("-s", type=click.IntRange(min=1), default=1, show_default=True, help="See -r; 1 is r-robustness.")
+@click.option("-r", type=click.IntRange(min=0), metavar="R", required=True, help="Jointly (R,S)-robust?")
+@click.option(
+    "-s", type=click.IntRange(min=1), metavar="S", default=1, show_default=True, help="See -r; 1 is r-robustness."
+)
 @click.option("--window", type=click.IntRange(min=1), metavar="L", help="Over every L steps; else find the smallest L.")
 @click.option("--tau", type=click.IntRange(min=0), metavar="T", help="A delay bound: say whether L <= T as well.")
 @click.option("--period", type=click.IntRange(min=1), metavar="P", help="The last P steps of SEQ repeat for ever.")
@@ -81,7 +83,9 @@ class Report:
 @click.option("--both-ways", is_flag=True, help="A contact of a contact trace is both arcs.")
 @click.option("--all-windows", is_flag=True, help="With --window: decide every window, also after one that fails.")
 @click.option("--curve", "with_curve", is_flag=True, help="For every r the smallest L as well.")
-@click.option("--picture", type=click.Path(dir_okay=False), metavar="FILE", help="Draw windows and curve (PNG, SVG).")
+@click.option(
+    "--plot", "picture", type=click.Path(dir_okay=False), metavar="FILE", help="Draw windows and curve (PNG, SVG)."
+)
 @click.option("-o", "--certificate", type=click.Path(path_type=Path), metavar="FILE", help="Where a certificate goes.")
 @click.option("--canonical", type=click.Path(path_type=Path), metavar="FILE", help="Where the canonical SEQ goes.")
 @query_options(algorithm=True)
@@ -145,7 +149,7 @@ def command(
         console.document(SCHEMA, report.document() | asked)
     else:
         lines = _lines(report, source, with_curve=with_curve or picture is not None, whole=console.is_verbose)
-        console.result("\n".join(lines))
+        console.answer(lines)
     if picture is not None:
         from robustness.figures.joint import draw_joint
 

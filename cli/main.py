@@ -71,8 +71,16 @@ class CommandTable(click.Group):
             meant = f"{problem.message.rstrip('.')}: did you mean {' or '.join(close)}?"
             raise click.UsageError(meant, ctx) from None
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Remember whether the answer, and so an error as well, is to be JSON."""
+        ctx.ensure_object(Console).as_json = "--json" in args[: args.index("--") if "--" in args else None]
+        return super().parse_args(ctx, args)
+
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command; whatever it raises ends in one line on standard error and an exit code."""
+        """Run the command; whatever it raises ends in one line on standard error and an exit code.
+
+        With --json an error is a document on standard output as well.
+        """
         console = ctx.ensure_object(Console)
         with warnings.catch_warnings():
             warnings.showwarning = lambda message, *_, **__: console.warn(str(message))
@@ -82,8 +90,13 @@ class CommandTable(click.Group):
             except click.UsageError as problem:
                 from robustness.printable import printable
 
-                raise click.UsageError(printable(problem.format_message(), "\n"), problem.ctx) from None
-            except (click.ClickException, click.exceptions.Exit, click.Abort):
+                message = printable(problem.format_message(), "\n")
+                console.error_document(problem.exit_code, message)
+                raise click.UsageError(message, problem.ctx) from None
+            except click.ClickException as problem:
+                console.error_document(problem.exit_code, problem.format_message())
+                raise
+            except (click.exceptions.Exit, click.Abort):
                 raise
             except (Exception, KeyboardInterrupt) as problem:  # noqa: BLE001 - the one place that maps them all
                 ctx.exit(_report(console, problem))
@@ -98,16 +111,18 @@ def _report(console: Console, problem: BaseException) -> ExitCode:
         console.error("".join(traceback.format_exception(problem)).rstrip())
     match code:
         case ExitCode.INTERRUPTED:
-            console.error("interrupted: nothing is claimed")
+            message = "interrupted: nothing is claimed"
         case ExitCode.INTERNAL_ERROR:
             hint = "" if console.is_verbose else "; -v shows where"
-            console.error(f"internal error, not a verdict: {type(problem).__name__}: {problem}{hint}")
+            message = f"internal error, not a verdict: {type(problem).__name__}: {problem}{hint}"
         case _ if isinstance(problem, RuntimeError) and code == ExitCode.USAGE:
-            console.error(f"error: {problem}: give fewer --jobs")
+            message = f"error: {problem}: give fewer --jobs"
         case _ if isinstance(problem, OSError) and problem.filename is not None:
-            console.error(f"error: cannot write {os.fsdecode(problem.filename)}: {problem.strerror}")
+            message = f"error: cannot write {os.fsdecode(problem.filename)}: {problem.strerror}"
         case _:
-            console.error(f"error: {problem}")
+            message = f"error: {problem}"
+    console.error(message)
+    console.error_document(code, message.removeprefix("error: "))
     return code
 
 

@@ -35,8 +35,8 @@ _OPTIONS: tuple[Callable[[Any], Any], ...] = (
         metavar="FILE",
         help="A file with one PATH a line (# begins a comment); - is standard input.",
     ),
-    click.option("-r", type=click.IntRange(min=0), help="A gate: every network is (R,S)-robust."),
-    click.option("-s", type=click.IntRange(min=1), default=None, help="With -r; 1 unless given."),
+    click.option("-r", type=click.IntRange(min=0), metavar="R", help="A gate: every network is (R,S)-robust."),
+    click.option("-s", type=click.IntRange(min=1), metavar="S", default=None, help="With -r; 1 unless given."),
     click.option(
         "--require", "survive", type=click.IntRange(min=0), metavar="F", help="A gate: F malicious are survived."
     ),

@@ -13,7 +13,7 @@ import click
 from .choices import THREAT_MODEL_NAMES
 from .exit_codes import ExitCode
 from .interruption import Overrun
-from .output import Console, ProgressLine, graph_document
+from .output import Console, ProgressLine, graph_document, label_text, set_text
 from .query import Query
 
 if TYPE_CHECKING:
@@ -28,8 +28,8 @@ __all__ = ["FILE", "Kept", "answer", "goal_and_files", "goals_from", "links_in",
 FILE = click.Path(dir_okay=False, path_type=Path)
 
 _GOAL_OPTIONS = (
-    click.option("-r", "r", type=click.IntRange(min=0), help="The goal: (R,S)-robust."),
-    click.option("-s", "s", type=click.IntRange(min=1), help="With -r; 1 unless given."),
+    click.option("-r", "r", type=click.IntRange(min=0), metavar="R", help="The goal: (R,S)-robust."),
+    click.option("-s", "s", type=click.IntRange(min=1), metavar="S", help="With -r; 1 unless given."),
     click.option("--survive", type=click.IntRange(min=0), metavar="F", help="The goal: survive F malicious nodes."),
     click.option(
         "--model",
@@ -142,8 +142,11 @@ def tell(
 ) -> None:
     """Print an answer, write what was asked for, and end with the exit code that it deserves."""
     if found is None:
-        console.error("interrupted: nothing is claimed" if is_interrupted else "undecided: nothing was found in time")
-        ctx.exit(ExitCode.INTERRUPTED if is_interrupted else ExitCode.UNDECIDED)
+        message = "interrupted: nothing is claimed" if is_interrupted else "undecided: nothing was found in time"
+        code = ExitCode.INTERRUPTED if is_interrupted else ExitCode.UNDECIDED
+        console.error(message)
+        console.error_document(code, message)
+        ctx.exit(code)
     after = _facts(found.graph) if found.cost is not None else None
     before = _facts(found.before)
     if found.cost is not None:
@@ -152,7 +155,7 @@ def tell(
         facts = {"graph": graph_document(found.before), **found.as_dict(), "before": before, "after": after}
         console.document(schema, facts)
     else:
-        console.result("\n".join(_lines(found, before, after)))
+        console.answer(_lines(found, before, after))
     if is_interrupted:
         console.error("interrupted: what is printed holds, nothing else is claimed")
         ctx.exit(ExitCode.INTERRUPTED)
@@ -177,13 +180,11 @@ def _lines(found: MendResult, before: dict[str, Any], after: dict[str, Any] | No
     lines = [f"{click.style(head + ':', fg=color, bold=True)}{rest}"]
     arrow = "->" if found.one_way else "--"
     shown = found.dropped if found.dropped else found.links
-    lines += [f"  {'drop' if found.dropped else 'add'}  {u!r} {arrow} {v!r}" for u, v in shown]
+    lines += [f"  {'drop' if found.dropped else 'add'}  {label_text(u)} {arrow} {label_text(v)}" for u, v in shown]
     if found.witness is not None and found.witness.S1:
-        from robustness.showing import labels_in_words
-
         lines.append(f"no candidate breaks this: {found.witness.goal}")
         sides = (("M", found.witness.M), ("S1", found.witness.S1), ("S2", found.witness.S2))
-        lines += [f"  {name:<3} {labels_in_words(labels)}" for name, labels in sides if labels]
+        lines += [f"  {name:<3} {set_text(labels)}" for name, labels in sides if labels]
     if found.reason:
         lines.append(f"stopped: {found.reason}")
     for name, facts in (("before", before), ("after", after)):

@@ -11,6 +11,7 @@ import os
 import re
 import shutil
 import sys
+import textwrap
 import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -25,7 +26,21 @@ if TYPE_CHECKING:
     from robustness.limits import Progress
     from robustness.results import Bounds
 
-__all__ = ["Console", "ProgressLine", "graph_document", "pass_console", "set_document", "set_text", "write_help"]
+__all__ = [
+    "ERROR_SCHEMA",
+    "Console",
+    "ProgressLine",
+    "graph_document",
+    "label_text",
+    "pass_console",
+    "set_document",
+    "set_text",
+    "wrapped",
+    "write_help",
+]
+
+#: With --json, of the document that says why there is no answer.
+ERROR_SCHEMA = "robustness/error/1"
 
 #: A set of more labels than this is cut in text; --json and -v print it whole.
 _LABELS_SHOWN = 60
@@ -40,14 +55,27 @@ class Console:
 
     is_verbose: bool = False
     is_quiet: bool = False
+    #: Whether --json stands on the command line, and whether its document has been printed.
+    as_json: bool = False
+    has_document: bool = False
 
     def result(self, text: str) -> None:
         """Print a result."""
         _write(_harmless(text), to_error=False)
 
+    def answer(self, lines: Iterable[str]) -> None:
+        """Print an answer whose first line says it all; with -q that line alone."""
+        self.result(next(iter(lines), "") if self.is_quiet else "\n".join(lines))
+
     def document(self, schema: str, content: Mapping[str, Any]) -> None:
         """Print a result as one JSON document whose first key is ``schema``."""
+        self.has_document = True
         _write(json.dumps({"schema": schema, **content}, allow_nan=False), to_error=False)
+
+    def error_document(self, code: int, message: str) -> None:
+        """With --json and no document so far: print one that says why, so that a program need not read words."""
+        if self.as_json and not self.has_document:
+            self.document(ERROR_SCHEMA, {"exit_code": int(code), "error": message})
 
     def talk(self, text: str) -> None:
         """Say something that is no result; -q silences it."""
@@ -113,6 +141,22 @@ class ProgressLine:
         _write(f"\r\x1b[K{self._text}", to_error=True, end="")
 
 
+def wrapped(text: str, *, indent: str = "", hanging: str = "") -> str:
+    """Return text in lines that fit the terminal, 100 letters where there is none; words are never cut.
+
+    ``indent`` stands before the first line, ``hanging`` before the others.
+    """
+    width = min(max(shutil.get_terminal_size((100, 24)).columns, 40), 120)
+    return textwrap.fill(
+        text,
+        width,
+        initial_indent=indent,
+        subsequent_indent=hanging,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
 def graph_document(graph: Digraph) -> dict[str, Any]:
     """Return what every JSON document says about the graph; an undirected edge is two arcs.
 
@@ -133,7 +177,17 @@ def set_text(labels: Iterable[Label], *, whole: bool = False) -> str:
     """Return a set of labels as text, in canonical order; a long one is cut unless ``whole``."""
     from robustness.showing import listed_in_words
 
-    return listed_in_words(set_document(labels), None if whole else _LABELS_SHOWN)
+    return listed_in_words(set_document(labels), None if whole else _LABELS_SHOWN, label_text)
+
+
+def label_text(label: object) -> str:
+    """Return a label as people write it; in quotes where it could be taken for something else than it is.
+
+    >>> label_text("Kiel"), label_text("4"), label_text(4), label_text("a, b")
+    ('Kiel', "'4'", '4', "'a, b'")
+    """
+    is_plain = isinstance(label, str) and re.fullmatch(r"[^\W\d_](?:[\w .:/-]*\w)?", label) is not None
+    return str(label) if is_plain else repr(label)
 
 
 def _harmless(text: str) -> str:

@@ -45,7 +45,7 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 @click.option("--runs", type=click.IntRange(min=1), default=1, show_default=True, help="Random starts.")
 @click.option("-T", "--sampling-period", "period", type=float, default=1.0, show_default=True)
 @click.option("--speed", type=float, default=0.0, show_default=True, help="The target speed.")
-@click.option("--alpha", type=float, help="The gain of every vehicle.  [default: 1.5/T]")
+@click.option("--alpha", type=float, help="The gain of every node.  [default: 1.5/T]")
 @click.option("--weights", type=click.Choice(("uniform", "unit")), default="uniform", show_default=True)
 @click.option("--save", type=_FILE, metavar="FILE", help="Record the (first) run, or a counterexample.")
 @click.option(

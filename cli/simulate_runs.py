@@ -38,6 +38,7 @@ def run_scenario(console: Console, query: Query, asked: Simulation) -> ExitCode:
         recorded = _recorded(asked)
     except InvalidParameter as problem:  # of a file, where elsewhere it is of the command line
         console.error(f"error: {problem}")
+        console.error_document(ExitCode.BAD_INPUT, str(problem))
         return ExitCode.BAD_INPUT
     if recorded is None:
         scenario, starts = _scenario(_network(asked), query, asked)
@@ -55,6 +56,7 @@ def run_scenario(console: Console, query: Query, asked: Simulation) -> ExitCode:
         from robustness.simulation.replay import write_run
 
         write_run(asked.save, scenario, starts[0], outcomes[0])
+        console.talk(f"wrote {asked.save}")
     if asked.plot is not None:
         from robustness.figures.simulation import Run, draw_runs
 
@@ -70,7 +72,7 @@ def run_scenario(console: Console, query: Query, asked: Simulation) -> ExitCode:
     if query.as_json:
         console.document(SCHEMA, _document(scenario, starts, outcomes, overall))
     else:
-        console.result("\n".join(_lines(scenario, starts, outcomes, overall, whole=console.is_verbose)))
+        console.answer(_lines(scenario, starts, outcomes, overall, whole=console.is_verbose))
     return ExitCode.of_outcome(overall, asked.expect)
 
 
@@ -242,9 +244,9 @@ def _last(scenario: Scenario, outcome: Outcome) -> int:
 def _headline(overall: str, runs: int) -> str:
     color = {"agreement": "green", "split": "red", "divergence": "red", "undecided": "yellow"}[overall]
     what = {
-        "agreement": "all normal vehicles came together",
-        "split": "normal vehicles stayed apart",
-        "divergence": "normal vehicles left every bound",
+        "agreement": "all normal nodes came together",
+        "split": "normal nodes stayed apart",
+        "divergence": "normal nodes left every bound",
         "undecided": "neither agreement nor a constant gap at the horizon",
     }[overall]
     return f"{click.style(overall + ':', fg=color, bold=True)} {what}" + (f", in {runs} runs" if runs > 1 else "")

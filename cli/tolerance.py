@@ -16,7 +16,7 @@ from .choices import THREAT_MODEL_NAMES
 from .exit_codes import ExitCode
 from .interruption import Overrun
 from .options import asked_reading, graph_argument, load_graph
-from .output import Console, ProgressLine, graph_document, set_text
+from .output import Console, ProgressLine, graph_document, set_text, wrapped
 from .query import Query, query_options
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class Report:
         if self.required is None:
             return None
         standings = {result.standing(self.required).value for result in self.table.results}
-        return next(each for each in ("refuted", "undecided", "guaranteed") if each in standings)
+        return next(each for each in ("refuted", "undecided", "open", "guaranteed") if each in standings)
 
     def exit_code(self) -> ExitCode:
         """Return 0, 10 or 30: with --require about that f, else about whether a limit left something undecided."""
@@ -113,8 +113,10 @@ def command(
     ...-local   each of them with up to f liars around every node
 
     Every f is guaranteed or refuted, unless a limit came first: the conditions are exact. Every attack is carried
-    out by the simulator first. With --require F: exit code 0 when F is guaranteed (under every model shown), 10 when an
-    attack refutes it, 30 when neither is known. Without: 0, or 30 when a limit left something undecided.
+    out by the simulator first; -v shows theorems and evidence, -q one line. With --require F: exit code 0 when F is
+    guaranteed (under every model shown), 10 when an attack refutes it, 30 when neither is known: "undecided" when a
+    limit came first, "open" when theory does not decide it from what is given, such as a trace that ends. Without: 0,
+    or 30 when something is undecided or open.
 
     With -o, DIR/graph.json is the canonical graph, DIR/MODEL-guaranteed-F.cert and DIR/MODEL-refuted-F.cert are
     certificates, and DIR/MODEL-attack.json is what 'simulate --attack' reads. With --tau, guaranteed
@@ -151,7 +153,7 @@ def command(
     if query.as_json:
         console.document(SCHEMA, report.document())
     else:
-        console.result("\n".join(_lines(report, source, whole=console.is_verbose)))
+        console.answer(_lines(report, source, console))
     if is_interrupted:
         console.error(f"interrupted: what is printed of {len(finished)} models holds, nothing else is claimed")
         ctx.exit(ExitCode.INTERRUPTED)
@@ -259,20 +261,40 @@ def _stopped(
     return Report(graph, ToleranceTable(graph, results), dict.fromkeys(names), required, seconds)
 
 
-def _lines(report: Report, source: str, *, whole: bool) -> Iterator[str]:
+def _lines(report: Report, source: str, console: Console) -> Iterator[str]:
+    """Yield the gate, the table and a sentence for each outcome; theorems and evidence where -v asks for them."""
+    from robustness.threat_models.summaries import sentences_of
+
     graph, table = report.graph, report.table
     if report.required is not None:
         yield _gate(report)
-    yield table.summary()
-    yield ""
+    elif console.is_quiet:
+        yield _in_one_line(table)
     yield from _table(table)
-    for result in table.results:
-        yield ""
-        yield from _evidence(result, report.confirmed[result.model], whole)
+    yield ""
+    yield from map(wrapped, sentences_of(table))
+    if console.is_verbose:
+        for result in table.results:
+            yield ""
+            yield from _evidence(result, report.confirmed[result.model])
     kind = "directed" if graph.directed else "undirected"
     yield ""
     yield f"graph      {source}: {graph.n} nodes, {graph.arc_count} arcs, {kind}"
+    if not console.is_verbose:
+        yield "evidence   -v shows the theorem and the evidence for each line, -o DIR writes certificates and attacks"
     yield f"time       {report.seconds:.3f} s"
+
+
+def _in_one_line(table: ToleranceTable) -> str:
+    """Return the largest f guaranteed under each model, and where something is not known the smallest f refuted."""
+    from robustness.threat_models.summaries import number
+
+    told = (
+        f"{result.model} {number(result.guaranteed)}"
+        + ("" if result.is_decided else f" (refuted: {number(result.refuted)})")
+        for result in table.results
+    )
+    return f"guaranteed f: {', '.join(told)}"
 
 
 def _gate(report: Report) -> str:
@@ -282,7 +304,8 @@ def _gate(report: Report) -> str:
     what = {
         "guaranteed": "agreement is guaranteed",
         "refuted": "an attack splits the network",
-        "undecided": "a limit was reached",
+        "undecided": "the time limit came first, so more time may tell",
+        "open": "theory does not decide it from what is given, however long one looks",
     }[verdict]
     return f"{click.style(verdict + ':', fg=color, bold=True)} f = {report.required} under {models}: {what}"
 
@@ -292,21 +315,22 @@ def _table(table: ToleranceTable) -> Iterator[str]:
 
     yield f"{'model':<17}{'guaranteed':>10}{'refuted':>9}  between"
     for result in table.results:
-        between = f"{', '.join(map(str, result.between))} undecided" if result.between else "-"
+        between = ", ".join(f"{f} {result.standing(f).value}" for f in result.between) or "-"
         if result.refuted is None and result.graph.n >= 2:
             between = "undecided"
         yield f"{result.model:<17}{number(result.guaranteed):>10}{number(result.refuted):>9}  {between}"
 
 
-def _evidence(result: ToleranceResult, confirmed: bool | None, whole: bool) -> Iterator[str]:
-    yield f"{result.model}: {result.threat.setting}"
+def _evidence(result: ToleranceResult, confirmed: bool | None) -> Iterator[str]:
+    yield wrapped(f"{result.model}: {result.threat.setting}", hanging="  ")
+    hanging = " " * 20
     for reason in result.reasons:
-        yield f"  f = {reason.f:<3} {reason.standing.value}: {reason.statement}"
-        yield f"          theorem   {reason.theorem}"
-        yield f"          evidence  {reason.evidence}"
+        yield wrapped(f"  f = {reason.f:<3} {reason.standing.value}: {reason.statement}", hanging=" " * 10)
+        yield wrapped(f"theorem   {reason.theorem}", indent=" " * 10, hanging=hanging)
+        yield wrapped(f"evidence  {reason.evidence}", indent=" " * 10, hanging=hanging)
         sets = result.attack_sets
         if reason.standing.value == "refuted" and sets is not None:
             for name, labels in (("M", sets.M), ("S1", sets.S1), ("S2", sets.S2)):
-                yield f"          {name:<9} {set_text(labels, whole=whole)}"
+                yield f"          {name:<9} {set_text(labels, whole=True)}"
             if confirmed:
                 yield "          simulated an exact split under every rule the attack is made for"

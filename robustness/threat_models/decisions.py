@@ -21,11 +21,15 @@ __all__ = ["Decisions", "Finding", "certain_attack"]
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """Whether an attack of a kind exists (None: a limit), its sets, and what decided it."""
+    """Whether an attack of a kind exists (None: not known), its sets, and what decided it.
+
+    ``is_open``: what is given does not determine it, so more time would not help.
+    """
 
     exists: bool | None
     sets: Sets | None
     how: str
+    is_open: bool = False
 
 
 def certain_attack(n: int, two_faces: bool) -> int:

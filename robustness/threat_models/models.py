@@ -73,11 +73,11 @@ class ThreatModel:
 #: Where the theorems hold for second-order vehicles. See robustness.gain_region: at s = 1, which the interval of the
 #: literature includes, vehicles can swap places for ever.
 SECOND_ORDER_GAINS = (
-    "second-order vehicles in the gain region: weights that add up to at most sigma, s = sigma T² < 1, "
+    "second-order nodes (vehicles) in the gain region: weights that add up to at most sigma, s = sigma T² < 1, "
     "2 sqrt(s) - s/2 <= alpha T <= 2 - s/2"
 )
 
-_A = f"docs/theorems.md, Theorem A, for first-order vehicles and for {SECOND_ORDER_GAINS}"
+_A = f"docs/theorems.md, Theorem A, for first-order nodes and for {SECOND_ORDER_GAINS}"
 _B = f"docs/theorems.md, Theorem B, for W-MSR and for {SECOND_ORDER_GAINS}"
 _SYNCHRONOUS_TRAP = (
     "Vaidya, Tseng and Liang 2012: each malicious node tells one group one value and the other group another"

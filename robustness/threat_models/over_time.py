@@ -10,7 +10,7 @@ of at most b, and updates at most g steps apart:
   (:mod:`robustness.threat_models.remembered`).
 
 The first two are tried first. A finite trace promises and forbids nothing beyond its last step: taken to go on as it
-was, what the first two leave between them stays undecided.
+was, what the first two leave between them stays open, however long one looks.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from robustness.limits import Limits
 from robustness.results import Verdict
 from robustness.threat_models.decisions import Decisions, Finding
 from robustness.threat_models.models import SECOND_ORDER_GAINS, THREAT_MODELS, ThreatModel
-from robustness.threat_models.remembered import Remembered, find_in_all
+from robustness.threat_models.remembered import BEFORE_THE_PERIOD, Remembered, find_in_all
 from robustness.time_varying import TimeVaryingGraph
 from robustness.time_varying.front import check_joint_within
 from robustness.traps.question import Question, Sets, solves
@@ -43,7 +43,7 @@ def over_time(name: str) -> ThreatModel:
     return replace(
         threat,
         setting=f"{threat.setting}; links come and go",
-        theorem=f"docs/theorems.md, Theorem C, for first-order vehicles and for {SECOND_ORDER_GAINS}",
+        theorem=f"docs/theorems.md, Theorem C, for first-order nodes and for {SECOND_ORDER_GAINS}",
         counter_theorem=f"{threat.counter_theorem}, and Theorem C: nobody hears more than what is remembered",
     )
 
@@ -124,9 +124,9 @@ class JointDecisions(Decisions):
         if self.sequence.period is None:
             if found.exists is None or twice is Verdict.UNDECIDED:
                 return Finding(None, None, "the time limit was reached")
-            return Finding(None, None, "a finite trace does not say what comes after it")
+            return Finding(None, None, "a finite trace does not say what comes after it", is_open=True)
         exists, sets, how = find_in_all(self.remembered, question, limits)
-        return Finding(exists, sets, how)
+        return Finding(exists, sets, how, is_open=how == BEFORE_THE_PERIOD)
 
     def _from_others(self, question: Question) -> Finding | None:
         """No attack for a greater f, or a looser bound, means none here; an attack on a smaller f is one here."""

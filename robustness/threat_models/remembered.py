@@ -77,6 +77,10 @@ class Remembered:
         return sum(each.arc_count for each in (*self.before, *self.period))
 
 
+#: Why a question is open, however long one looks.
+BEFORE_THE_PERIOD = "the steps before the period are not held apart by what holds the period apart"
+
+
 def find_in_all(remembered: Remembered, question: Question, limits: Limits) -> tuple[bool | None, Sets | None, str]:
     """Return whether a triple exists (None: a limit), a re-checked one, and what decided.
 
@@ -89,7 +93,7 @@ def find_in_all(remembered: Remembered, question: Question, limits: Limits) -> t
     if exists and remembered.before:
         exists, sets = _solve(remembered, question, limits, with_before=True)
         if exists is False:
-            return None, None, "the steps before the period are not held apart by what holds the period apart"
+            return None, None, BEFORE_THE_PERIOD
     if exists is None:
         return None, None, "the time limit was reached"
     if exists and (sets is None or not holds_apart(remembered, question, sets)):

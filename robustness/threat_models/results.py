@@ -27,8 +27,10 @@ class Standing(enum.Enum):
     GUARANTEED = "guaranteed"
     #: A re-checked attack splits the network for ever.
     REFUTED = "refuted"
-    #: A limit stopped the search.
+    #: A limit stopped the search: more time may tell.
     UNDECIDED = "undecided"
+    #: Theory does not decide it from what is given, such as a finite trace: more time does not help.
+    OPEN = "open"
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,11 +142,12 @@ class ToleranceResult(Shown):
             return Standing.GUARANTEED
         if self.refuted is not None and f >= self.refuted:
             return Standing.REFUTED
-        return Standing.UNDECIDED
+        is_open = any(reason.f == f and reason.standing is Standing.OPEN for reason in self.reasons)
+        return Standing.OPEN if is_open else Standing.UNDECIDED
 
     @property
     def between(self) -> tuple[int, ...]:
-        """The f that a limit left undecided, up to the smallest refuted one."""
+        """The f that are neither guaranteed nor refuted, up to the smallest refuted one; :meth:`standing` says why."""
         return tuple(range(self.guaranteed + 1, self.refuted)) if self.refuted is not None else ()
 
     @property

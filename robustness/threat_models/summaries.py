@@ -10,7 +10,7 @@ from robustness.threat_models.models import THREAT_MODELS
 if TYPE_CHECKING:
     from robustness.threat_models.results import ToleranceResult, ToleranceTable
 
-__all__ = ["number", "summary", "table_summary"]
+__all__ = ["number", "sentences_of", "summary", "table_summary"]
 
 
 def number(f: int | None) -> str:
@@ -30,25 +30,35 @@ def _outcome(result: ToleranceResult) -> str:
     if result.graph.n < 2:
         return "fewer than two nodes cannot disagree"
     parts = [_promised(result), _refuted(result)]
-    if result.between:
-        values = ", ".join(map(str, result.between))
-        parts.append(f"f = {values} {'was' if len(result.between) == 1 else 'were'} not decided within the limit")
+    standings = {f: result.standing(f).value for f in result.between}
+    late = [str(f) for f, standing in standings.items() if standing == "undecided"]
+    unsaid = [str(f) for f, standing in standings.items() if standing == "open"]
+    if late:
+        parts.append(f"f = {', '.join(late)} {'was' if len(late) == 1 else 'were'} not decided within the limit")
+    if unsaid:
+        why = next(reason.evidence for reason in result.reasons if reason.standing.value == "open")
+        parts.append(f"f = {', '.join(unsaid)} {'is' if len(unsaid) == 1 else 'are'} open: {why}")
     return "; ".join(part for part in parts if part)
 
 
 def table_summary(table: ToleranceTable) -> str:
-    """Return the whole table as one paragraph; models with one and the same outcome share a sentence."""
+    """Return the whole table as one paragraph."""
     graph = table.graph
-    size = f"A network of {graph.n} {'node' if graph.n == 1 else 'nodes'} and {graph.arc_count} arcs. "
-    if graph.n < 2:
-        return size + "Fewer than two nodes cannot disagree, whatever the threat."
+    size = f"A network of {graph.n} {'node' if graph.n == 1 else 'nodes'} and {graph.arc_count} arcs."
+    return " ".join([size, *sentences_of(table)])
+
+
+def sentences_of(table: ToleranceTable) -> list[str]:
+    """Return a sentence for each outcome, which models with one and the same share, and what the promises rest on."""
+    if table.graph.n < 2:
+        return ["Fewer than two nodes cannot disagree, whatever the threat."]
     sentences: dict[str, list[str]] = {}
     for result in table.results:
         sentences.setdefault(_outcome(result), []).append(result.threat.where)
     told = [f"{'; and '.join(where)}: {outcome}." for outcome, where in sentences.items()]
     if len(sentences) == 1 and len(table) == len(THREAT_MODELS):
         told = [f"under every threat model: {next(iter(sentences))}."]
-    return size + " ".join([*(sentence[0].upper() + sentence[1:] for sentence in told), *_scope(table.results)])
+    return [*(sentence[0].upper() + sentence[1:] for sentence in told), *_scope(table.results)]
 
 
 def _scope(results: Sequence[ToleranceResult]) -> Iterator[str]:
@@ -65,7 +75,8 @@ def _promised(result: ToleranceResult) -> str:
     if f < 0:
         if result.refuted == 0:
             return ""
-        return "nothing is guaranteed within the limit"
+        is_open = result.standing(0).value == "open"
+        return "nothing is guaranteed" if is_open else "nothing is guaranteed within the limit"
     if f == 0:
         return "agreement is guaranteed only while nobody lies (f = 0)"
     return f"agreement is guaranteed for f = {f}" + (" and below" if f > 1 else "")

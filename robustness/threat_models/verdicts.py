@@ -102,8 +102,11 @@ class _Reasons:
         return Reason(Standing.REFUTED, f, statement, threat.counter_theorem, evidence)
 
     def undecided(self, f: int) -> Reason:
+        how, known = self._how(f), self._found.get(f)
+        if known is not None and known.is_open:
+            return Reason(Standing.OPEN, f, f"what is given does not determine f = {f}", f"none: {how}", how)
         return Reason(
-            Standing.UNDECIDED, f, f"nothing was decided about f = {f}", "none: a limit stopped the work", self._how(f)
+            Standing.UNDECIDED, f, f"nothing was decided about f = {f}", "none: a limit stopped the work", how
         )
 
     def _how(self, f: int) -> str:

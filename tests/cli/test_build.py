@@ -96,7 +96,6 @@ class TestList:
         ["wheel", "--k", "3"],
         ["complete-multipartite", "--sizes", "3,,1"],
         ["five-node-figure", "--reading", "third"],
-        ["--json"],
         ["wheel", "--n", "5", "-o", "/nowhere/wheel.json"],
     ],
 )

@@ -43,7 +43,7 @@ def test_either_verdict(r: int, s: int, code: int, verdict: str, evidence: set[s
     claim = verify(rb.Digraph.from_networkx(WHEEL).canonical_bytes(), target.read_bytes())
     assert (claim.verdict, claim.r, claim.s) == (verdict, r, s)
     assert claim.evidence in evidence
-    assert f"{target} ({target.stat().st_size:,} bytes, verified)" in outcome.stdout
+    assert f"{target} ({target.stat().st_size:,} bytes, verified)" in outcome.stderr
     assert [path.name for path in target.parent.iterdir()] == ["wheel.cert"]
 
 

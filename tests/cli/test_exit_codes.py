@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -181,9 +182,9 @@ def test_ctrl_c_prints_the_bounds_and_ends_soon(hard: str, question: list[str]) 
             process.send_signal(signal.SIGINT)
             out, err = process.communicate(timeout=120)  # without the signal: years
         assert process.returncode == 130
-        if out:  # on a busy machine the search may not have begun
+        document = json.loads(out)
+        if document["schema"] != "robustness/error/1":  # on a busy machine the search may not have begun
             break
-    document = json.loads(out)
     assert document["verdict"] == "undecided"
     assert 0 <= document["bounds"]["lower"] <= document["bounds"]["upper"] <= 30
     assert err.decode().startswith("interrupted:")
@@ -296,3 +297,38 @@ def test_an_attack_is_played_within_the_limit(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr("cli.attack._carry_out", lambda *_: time.sleep(5))
     outcome = CliRunner().invoke(robustness, ["attack", SQUARE, "-f", "1", "--timeout", "0.1"])
     assert outcome.exit_code == ExitCode.UNDECIDED
+
+
+@pytest.mark.parametrize(
+    ("asked", "code"),
+    [
+        (["check", "missing.json", "--json"], 3),
+        (["check", "--json", "--no-such-option"], 2),
+        (["chek", "--json"], 2),
+        (["tolerance", "--json", SQUARE, "--period", "2"], 2),
+        (["survey", "--json"], 2),
+    ],
+)
+def test_with_json_an_error_is_a_document_on_standard_output(asked: list[str], code: int) -> None:
+    outcome = CliRunner().invoke(robustness, asked)
+    assert outcome.exit_code == code
+    document = json.loads(outcome.stdout)
+    assert list(document) == ["schema", "exit_code", "error"]
+    assert (document["schema"], document["exit_code"]) == ("robustness/error/1", code)
+    assert document["error"] in outcome.stderr
+    without = [word for word in asked if word != "--json"]
+    assert CliRunner().invoke(robustness, without).stdout == ""
+
+
+@pytest.mark.parametrize("asked", [["check", SQUARE], ["tolerance", SQUARE], ["mend", SQUARE, "-r", "2"]])
+def test_q_is_one_line(asked: list[str]) -> None:
+    assert CliRunner().invoke(robustness, [*asked, "-q"]).stdout.count("\n") == 1
+
+
+def test_one_spelling_for_one_thing() -> None:
+    """What several commands have has one name, and no help shows markup."""
+    for name in COMMANDS:
+        text = CliRunner().invoke(robustness, [name, "--help"]).stdout
+        assert "--picture" not in text
+        assert "--time-limit" not in text
+        assert re.findall(r"``|:\w+:`|\\b|\*\*", text) == []

@@ -50,7 +50,7 @@ def document(*arguments: str) -> dict[str, object]:
         (["-r", "2", "--step", "3"], 2),
         (["-r", "2", "--both-ways"], 2),
         (["-r", "2", "--all-windows"], 2),
-        (["-r", "2", "--picture", "joint.nonsense"], 2),
+        (["-r", "2", "--plot", "joint.nonsense"], 2),
     ],
 )
 def test_exit_codes(arguments: list[str], code: int) -> None:
@@ -179,12 +179,12 @@ def test_directory_and_contact_trace(tmp_path: Path) -> None:
 @pytest.mark.parametrize("arguments", [["-r", "2"], ["-r", "2", "--window", "2"], ["-r", "4"], ["-r", "1"]])
 def test_picture(tmp_path: Path, arguments: list[str]) -> None:
     path = tmp_path / "joint.svg"
-    outcome = joint(*arguments, "--picture", str(path))
+    outcome = joint(*arguments, "--plot", str(path))
     assert outcome.exit_code in (0, 10)
     assert outcome.stderr == f"wrote {path}\n"
     first = path.read_bytes()
     assert b"<svg" in first
-    joint(*arguments, "--picture", str(path), "-q")
+    joint(*arguments, "--plot", str(path), "-q")
     assert path.read_bytes() == first, "the same question gives the same file"
 
 
@@ -197,7 +197,7 @@ def test_what_the_picture_shows(
 ) -> None:
     drawn: list[JointResult] = []
     monkeypatch.setattr("robustness.figures.joint.draw_joint", lambda *_, shown: drawn.append(shown))
-    joint(*arguments, "--picture", str(tmp_path / "joint.svg"))
+    joint(*arguments, "--plot", str(tmp_path / "joint.svg"))
     (shown,) = drawn
     assert (shown.examined, len(shown.failing_starts()), len(shown.window_unions)) == (length, failing, 5)
 
@@ -206,12 +206,12 @@ def test_picture_of_every_verdict_a_prefix_and_a_wrapped_window(tmp_path: Path) 
     wheel, empty = nx.wheel_graph(5), nx.empty_graph(5)
     sequence = TimeVaryingGraph([wheel, empty, wheel, wheel, empty], period=3)
     path = tmp_path / "joint.png"
-    outcome = joint("-r", "2", "--window", "1", "--picture", str(path), sequence=sequence)
+    outcome = joint("-r", "2", "--window", "1", "--plot", str(path), sequence=sequence)
     assert outcome.exit_code == 10
     assert path.read_bytes().startswith(b"\x89PNG")
-    assert joint("-r", "2", "--timeout", "1e-9", "--picture", str(path)).exit_code == 30
+    assert joint("-r", "2", "--timeout", "1e-9", "--plot", str(path)).exit_code == 30
     wrapped = TimeVaryingGraph([empty, wheel, empty], period=3)
-    outcome = joint("-r", "2", "--window", "2", "--picture", str(path), sequence=wrapped)
+    outcome = joint("-r", "2", "--window", "2", "--plot", str(path), sequence=wrapped)
     assert "violating window: steps 2 to 3" in outcome.stdout
 
 
@@ -219,7 +219,7 @@ def test_picture_of_every_verdict_a_prefix_and_a_wrapped_window(tmp_path: Path) 
     ("name", "message"), [("nowhere/joint.png", "error: cannot write"), ("joint.odd", "error: a picture's suffix is")]
 )
 def test_a_picture_that_cannot_be_written_is_a_usage_error(tmp_path: Path, name: str, message: str) -> None:
-    outcome = joint("-r", "2", "--picture", str(tmp_path / name))
+    outcome = joint("-r", "2", "--plot", str(tmp_path / name))
     assert outcome.exit_code == 2
     assert outcome.stderr.startswith(message)
     assert outcome.stdout.startswith("robust: "), "the answer is not lost"
@@ -229,7 +229,7 @@ def test_without_matplotlib_the_extra_is_named(tmp_path: Path, monkeypatch: pyte
     import sys
 
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
-    outcome = joint("-r", "2", "--picture", str(tmp_path / "joint.png"))
+    outcome = joint("-r", "2", "--plot", str(tmp_path / "joint.png"))
     assert outcome.exit_code == 2
     assert "graph-robustness[plot]" in outcome.stderr
 

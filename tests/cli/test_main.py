@@ -164,6 +164,13 @@ class TestProgress:
 
 
 def test_sets_are_in_canonical_order() -> None:
-    assert set_text({"b", 10, 9, "1", (1, "x")}) == "{9, 10, '1', 'b', (1, 'x')}"
+    assert set_text({"b", 10, 9, "1", (1, "x")}) == "{9, 10, '1', b, (1, 'x')}"
     assert set_text(range(100)).endswith("58, 59, … 40 more}")
     assert set_text(range(100), whole=True).endswith("98, 99}")
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_the_shell_completes(shell: str) -> None:
+    assert "ROBUSTNESS_COMPLETE" in python("-m", "cli", _ROBUSTNESS_COMPLETE=f"{shell}_source")
+    asked = {"COMP_WORDS": "robustness ch", "COMP_CWORD": "ch" if shell == "fish" else "1"}
+    assert "check" in python("-m", "cli", _ROBUSTNESS_COMPLETE=f"{shell}_complete", **asked)

@@ -141,7 +141,8 @@ def test_ctrl_c_keeps_the_best_links(tmp_path: Path) -> None:
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=120)
     assert process.returncode == ExitCode.INTERRUPTED
-    if out:  # on a very slow machine nothing is known yet
-        assert json.loads(out)["verdict"] == "feasible"
-    else:
+    found = json.loads(out)
+    if found["schema"] == "robustness/error/1":  # on a very slow machine nothing is known yet
         assert "nothing is claimed" in err
+    else:
+        assert found["verdict"] in ("feasible", "undecided")

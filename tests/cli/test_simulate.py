@@ -122,7 +122,7 @@ class TestSimulate:
 
     def test_text(self) -> None:
         done = run("simulate", "-", "--schedule", "delayed", graph=WHEEL)
-        assert done.stdout.splitlines()[0] == "split: normal vehicles stayed apart"
+        assert done.stdout.splitlines()[0] == "split: normal nodes stayed apart"
         assert "{0}, seed 0: split, exactly" in done.stdout
         assert done.stdout.count("group ") == 2
 

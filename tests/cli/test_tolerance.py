@@ -46,12 +46,14 @@ def test_models_are_those_of_the_library() -> None:
 
 
 class TestText:
-    def test_a_paragraph_then_the_table_then_the_evidence(self) -> None:
+    def test_the_table_then_a_sentence_for_each_outcome_then_what_it_was_asked_about(self) -> None:
         outcome = tolerance()
         assert outcome.exit_code == ExitCode.DONE
-        paragraph, table, *evidence = outcome.stdout.split("\n\n")
-        assert paragraph.startswith("A network of 5 nodes and 16 arcs. In step, without delays")
-        assert "\n" not in paragraph
+        table, sentences, facts = outcome.stdout.split("\n\n")
+        assert sentences.startswith("In step, without delays")
+        assert max(map(len, sentences.splitlines())) <= 120
+        assert "theorem  " not in outcome.stdout
+        assert [line.split()[0] for line in facts.splitlines()] == ["graph", "evidence", "time"]
         rows = [line.split() for line in table.splitlines()]
         assert rows[0] == ["model", "guaranteed", "refuted", "between"]
         assert rows[1:] == [
@@ -62,7 +64,12 @@ class TestText:
             ["delayed", "0", "1", "-"],
             ["delayed-local", "0", "1", "-"],
         ]
-        assert len(evidence) == 7
+        assert rows == [line.split() for line in tolerance("-v").stdout.split("\n\n")[0].splitlines()]
+
+    def test_theorems_and_evidence_on_request(self) -> None:
+        _, _, *evidence, facts = tolerance("-v").stdout.split("\n\n")
+        assert facts.startswith("graph")
+        assert len(evidence) == 6
         assert "S1        {" in evidence[4]
         assert "simulated an exact split" in evidence[4]
         assert "theorem   docs/theorems.md, Theorem A" in evidence[4]
@@ -70,7 +77,19 @@ class TestText:
     def test_one_model(self) -> None:
         outcome = tolerance("--model", "delayed")
         assert "byzantine" not in outcome.stdout
-        assert outcome.stdout.startswith("A network of 5 nodes and 16 arcs. With delays")
+        assert outcome.stdout.split("\n\n")[1].startswith("With delays")
+
+    def test_one_line_on_request(self) -> None:
+        told = (
+            "guaranteed f: malicious 1, malicious-local 1, byzantine 0, byzantine-local 0, delayed 0, delayed-local 0"
+        )
+        assert tolerance("-q").stdout == f"{told}\n"
+        assert tolerance("-q", "--require", "9").stdout.count("\n") == 1
+
+    def test_lines_fit_the_terminal(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setenv("COLUMNS", "60")
+        sentences = tolerance().stdout.split("\n\n")[1]
+        assert max(map(len, sentences.splitlines())) <= 60
 
     @pytest.mark.parametrize("n", [0, 1])
     def test_nobody_to_disagree(self, n: int) -> None:
@@ -80,7 +99,7 @@ class TestText:
 
     def test_not_even_agreement_without_liars(self) -> None:
         outcome = tolerance("--model", "delayed", graph=encode_topology(nx.empty_graph(3)))
-        assert "agreement fails even though nobody lies" in outcome.stdout
+        assert "agreement fails even though nobody lies" in " ".join(outcome.stdout.split())
         assert "delayed                none        0  -" in outcome.stdout
 
 
@@ -137,13 +156,26 @@ class TestGate:
         assert found["require"] == {"f": 3, "verdict": "undecided"}
         assert tolerance("--model", "delayed", "--timeout", "0.2", graph=graph).exit_code == ExitCode.UNDECIDED
 
+    def test_what_theory_leaves_open_is_told_from_what_a_limit_left(self, tmp_path: Path) -> None:
+        steps = [[[u, v] for u in range(6) for v in range(6) if u != v and (u + v) % 2 == k] for k in (0, 1)]
+        (tmp_path / "links.json").write_text(json.dumps({"nodes": list(range(6)), "period": None, "steps": steps}))
+        asked = ["tolerance", str(tmp_path / "links.json"), "--tau", "1", "--delay", "1", "--model", "delayed"]
+        outcome = CliRunner().invoke(robustness, [*asked, "--require", "1"])
+        assert outcome.exit_code == ExitCode.UNDECIDED
+        assert outcome.stdout.startswith("open: f = 1 under delayed: theory does not decide it")
+        assert "0 open, 1 open" in outcome.stdout
+        found = json.loads(CliRunner().invoke(robustness, [*asked, "--require", "1", "--json"]).stdout)
+        assert found["require"] == {"f": 1, "verdict": "open"}
+
     def test_work_that_overruns_claims_nothing(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr("cli.interruption.GRACE", 0.0)
         monkeypatch.setattr("cli.tolerance._examine", lambda *_: time.sleep(1))
         outcome = tolerance("--require", "0", "--timeout", "0.05")
         assert outcome.exit_code == ExitCode.UNDECIDED
         assert outcome.stdout.startswith("undecided:")
-        assert "nothing was decided" in outcome.stdout
+        assert "f = 0 under" in outcome.stdout
+        assert "time limit came first" in outcome.stdout
+        assert "nothing is guaranteed within the limit" in outcome.stdout
 
     def test_an_attack_that_does_not_split_is_a_bug_not_a_verdict(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr("robustness.threat_models.confirmation.confirm", lambda _: False)

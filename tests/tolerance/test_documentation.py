@@ -49,6 +49,7 @@ def run(line: str) -> str:
 def test_the_tutorial_prints_what_it_shows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("matplotlib")
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
     printed = ""
     for language, lines in blocks(TUTORIAL):
         if language == "console":

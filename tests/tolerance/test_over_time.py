@@ -79,7 +79,7 @@ def test_as_defined(part: int) -> None:
                 trapped = next(f for f in range(10) if has_trap(union.in_masks, f, local))
                 longest = result.longest_window or 0
                 assert (result.guaranteed, result.refuted) == (promised(sequence, longest), trapped)
-                assert all(result.standing(f) is Standing.UNDECIDED for f in result.between)
+                assert all(result.standing(f) is Standing.OPEN for f in result.between)
             else:
                 split = next(f for f in range(10) if has_trap_over_time(sequence, ages, f, local))
                 assert (result.guaranteed, result.refuted) == (split - 1, split), (ages, local)
@@ -87,10 +87,10 @@ def test_as_defined(part: int) -> None:
 
 
 def test_before_a_period_nothing_is_claimed_that_its_steps_contradict() -> None:
-    """A prefix in which all hear all: what holds the period apart does not hold the prefix apart, so f is undecided."""
+    """A prefix in which all hear all: what holds the period apart does not hold the prefix apart, so f is open."""
     steps = [nx.complete_graph(5), *(halves_of_k5().graph_at(k).to_networkx() for k in range(2))]
     result = tolerance(TimeVaryingGraph(steps, period=2), "delayed", tau=2)
-    assert (result.guaranteed, result.standing(1)) == (0, Standing.UNDECIDED)
+    assert (result.guaranteed, result.standing(1)) == (0, Standing.OPEN)
     steps[0] = nx.empty_graph(5)
     result = tolerance(TimeVaryingGraph(steps, period=2), "delayed", tau=2)
     assert (result.guaranteed, result.refuted, confirm(result)) == (0, 1, True)
