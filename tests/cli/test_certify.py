@@ -56,6 +56,7 @@ def test_json_key_by_key(r: int, code: int, target: Path) -> None:
     found = json.loads(outcome.stdout)
     assert 0 <= found.pop("seconds") < 60
     assert isinstance(found.pop("algorithm"), str)
+    assert set(found.pop("bounds")) >= {"lower", "upper"}
     graph = rb.Digraph.from_networkx(WHEEL)
     assert found == {
         "schema": "robustness/certify/1",
