@@ -28,7 +28,7 @@ DEMO_R := 5
 DEMO_CERTIFICATE := $(BUILD)/demo/di-yuan-$(DEMO_R)-robust.cert
 DEMO_CANONICAL := $(BUILD)/demo/di-yuan.graph
 
-.PHONY: help demo venv test test-slow lint types docs coverage-kernel formal bench bench-quick wheel lock clean
+.PHONY: help demo venv test test-slow fuzz lint types docs coverage-kernel formal bench bench-quick wheel lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */\1\t/' | expand -t 18
@@ -93,6 +93,10 @@ types: $(READY) ## mypy --strict
 docs: $(READY) ## the documentation, warnings as errors, into build/docs
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs $(BUILD)/docs
 	@echo "documentation: $(BUILD)/docs/index.html"
+
+SECONDS := 60
+fuzz: $(READY) ## mutated files, certificates and options for SECONDS=60: only promised exit codes; build/fuzz keeps finds
+	$(BIN)/python -m tests.fuzzing --seconds $(SECONDS) --keep $(BUILD)/fuzz
 
 bench: $(READY) ## the full benchmark
 	$(BIN)/python -m benchmarks

@@ -13,7 +13,7 @@ from types import MappingProxyType
 from robustness.decision.front import check_rs_robustness
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
-from robustness.gain_region import gain_gap
+from robustness.gain_region import gain_gap, gain_region
 from robustness.limits import Limits, Progress
 from robustness.results import Verdict
 from robustness.simulation.attacks import Attack, attack_from_trap, attack_from_violation
@@ -136,6 +136,7 @@ def _gap(graph: Digraph, f: int, T: float | None, alpha: float | None, sigma: fl
         return None
     period = 1.0 if T is None else T
     most = float(kept_weight_bound(graph, arc_weights(graph, "uniform"), f).max()) if sigma is None else sigma
+    gain_region(period, most)  # refuses a period that nothing can be divided by
     return gain_gap(period, 1.5 / period if alpha is None else alpha, most)
 
 

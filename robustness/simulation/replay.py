@@ -124,6 +124,9 @@ def _decode(value: Any) -> Any:
     kind = fields.pop("kind")
     if kind == "Digraph":
         labels = [from_json(label) for label in fields["labels"]]
+        ends = [end for arc in fields["arcs"] for end in arc]
+        if not all(type(end) is int and 0 <= end < len(labels) for end in ends):
+            raise InvalidParameter(f"the arcs of a recorded graph join ids in 0..{len(labels) - 1}: record it anew")
         return Digraph(labels, [(labels[u], labels[v]) for u, v in fields["arcs"]], directed=fields["directed"])
     if kind == "mapping":
         return {_decode(key): _decode(item) for key, item in fields["items"]}
