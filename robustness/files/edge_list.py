@@ -40,6 +40,8 @@ def arrows_of(content: Content) -> Found | None:
         When some lines have no arrow, or the arrows contradict one another or a comment.
     """
     lines = content.lines
+    if not any("--" in text or "->" in text for _, text in lines):
+        return None
     if any("\t" in text and not re.search(r"\t(->|--|<->)\t", text) for _, text in lines):
         return None  # tabs separate, so an arrow is part of a name
     matches = [(number, None if text.startswith('"') else _ARROW.match(text)) for number, text in lines]

@@ -106,7 +106,7 @@ def content_of(data: bytes, skip_lines: int | None = None) -> Content:
             _listen(text, number, said)
             comment = comment if lines else text.strip().lstrip("#%/ \t")
             continue
-        if '"' not in text:
+        if "#" in text and '"' not in text:
             text = re.split(r"\s#", text)[0].rstrip(" ")
         if text.strip():
             lines.append((number, text))
@@ -141,8 +141,8 @@ def rows_of(content: Content) -> Rows:
         When lines differ in their number of cells.
     """
     numbers = [number for number, _ in content.lines]
-    texts = [text if '"' in text else _DICT.sub("", text) for _, text in content.lines]
-    if texts and all(_TUPLE.match(text) for text in texts):
+    texts = [_DICT.sub("", text) if "{" in text and '"' not in text else text for _, text in content.lines]
+    if texts and texts[0][:1] in ("(", "[") and all(_TUPLE.match(text) for text in texts):
         cells = [[match["u"], match["v"]] for text in texts if (match := _TUPLE.match(text))]
         cells = [[bare(cell) for cell in row] for row in cells]
         return Rows(cells, numbers, content.is_directed, "tuples", content.comment, content.skipped < 0)
