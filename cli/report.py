@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from .many_networks import ManyNetworks, exit_code, many_networks_options, run_survey
 from .output import Console
 from .query import speaking
-
-if TYPE_CHECKING:
-    from robustness.surveying.row import Findings
 
 __all__ = ["command"]
 
@@ -29,24 +25,41 @@ __all__ = ["command"]
 )
 @click.option("--title", default="Robustness report", show_default=True, help="The heading of the page.")
 @click.option("--no-pictures", is_flag=True, help="Neither networks nor attacks are drawn: a smaller page.")
+@click.option(
+    "--mending",
+    type=click.FloatRange(min=0),
+    default=5.0,
+    show_default=True,
+    metavar="SECONDS",
+    help="For each network, to find links that give it what it lacks; 0 proposes none.",
+)
 @speaking
 def command(
-    ctx: click.Context, console: Console, networks: ManyNetworks, output: Path, title: str, no_pictures: bool
+    ctx: click.Context,
+    console: Console,
+    networks: ManyNetworks,
+    output: Path,
+    title: str,
+    no_pictures: bool,
+    mending: float,
 ) -> None:
     """Write one HTML page about many networks, for somebody who will not open a terminal.
 
     PATH is as for survey. The page is one file that loads nothing: the verdict in words, the networks as rows to sort,
-    and for each its picture with the weakest pair, what it survives, the attack that splits it, to play, and how to
-    verify its certificate. The verdict is printed as well, and the exit code is that of survey: of the worst network.
+    and for each its picture with the weakest pair, what it survives, the attack that splits it, to play, the links that
+    would mend it, and how to verify its certificate. The verdict is printed as well, and the exit code is that of
+    survey: of the worst network.
     """
     from robustness.files.writing import require_different_files
-    from robustness.reporting.front import report_of, require_drawing
+    from robustness.reporting.front import Kept, report_of, require_drawing
     from robustness.reporting.wording import headline
 
     require_drawing(not no_pictures)
     require_different_files(networks.paths, [output])
-    kept: list[Findings] = []
-    found, is_interrupted = run_survey(console, networks, on_findings=kept.append)
-    report_of(found, tuple(kept), title=title, gate=networks.gate, pictures=not no_pictures).write(output)
+    kept = Kept(networks.gate, mending)
+    found, is_interrupted = run_survey(console, networks, on_findings=kept.add)
+    findings, proposals = tuple(kept.findings), dict(kept.proposals)
+    made = report_of(found, findings, proposals, title=title, gate=networks.gate, pictures=not no_pictures)
+    made.write(output)
     console.result(headline(found, networks.gate))
     ctx.exit(exit_code(console, found, is_interrupted, [f"wrote {output} ({len(found)} networks)"]))

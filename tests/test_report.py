@@ -89,6 +89,29 @@ class TestWords:
         assert "1 were not decided within the limit: nothing is claimed about them" in cut.html
 
 
+class TestMending:
+    def test_what_a_network_lacks_is_proposed_and_what_passes_gets_nothing(self) -> None:
+        graphs = {"path": nx.path_graph(5), "complete": nx.complete_graph(5)}
+        made = rb.report(graphs, gate=rb.Gate(r=2), models=["malicious"], pictures=False)
+        parts = made.html.split("<details class='network'")
+        found = rb.mend(nx.path_graph(5), 2)
+        links = f"{len(found.links)} more link{'s' * (len(found.links) != 1)}"
+        assert f"With {links} it is (2,1)-robust. Fewer do not suffice: this is proven." in parts[1]
+        assert "What would mend it" not in parts[2]
+
+    def test_without_a_gate_it_is_one_more_r(self) -> None:
+        graphs = {"cycle": nx.cycle_graph(5), "small": nx.complete_graph(3)}
+        made = rb.report(graphs, models=[], pictures=False)
+        first, second = made.html.split("<details class='network'")[1:]
+        assert "it is (2,1)-robust" in first
+        assert "No further links between these nodes" in second
+
+    def test_none_on_request_and_bad_limits_are_refused(self) -> None:
+        assert "What would mend it" not in rb.report({"a": nx.cycle_graph(5)}, mending=0, pictures=False).html
+        with pytest.raises(rb.InvalidParameter, match="seconds of at least 0, not -1"):
+            rb.report({"a": nx.cycle_graph(5)}, mending=-1, pictures=False)
+
+
 class TestSafety:
     def test_tags_nest_and_labels_are_data(self, made: Report) -> None:
         page = Tags(made.html)

@@ -82,7 +82,9 @@ def draw(
         ax = plt.subplots(figsize=_size(graph), layout="constrained")[1]
     _draw_on(ax, graph, marks, places)
     if pos is None and positions_in(G) is None:
-        ax.set_aspect("equal")  # circles of ours stay circles; maps and users' places fill the picture
+        # Circles of ours stay circles, in a picture that is filled, so that no node of a flat one is cut off; maps and
+        # users' places fill the picture as they are.
+        ax.set_aspect("equal", adjustable="datalim")
     return ax
 
 

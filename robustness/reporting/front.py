@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 from robustness.digraph import GraphLike
 from robustness.errors import InvalidParameter
 from robustness.figures.saving import new_figure
 from robustness.files.writing import replace_file
+from robustness.mending import MendResult
 from robustness.reporting import page
+from robustness.reporting.proposal import proposal_for
 from robustness.reporting.section import section_of
 from robustness.surveying import Gate, Row, Survey, survey
 from robustness.surveying.row import Findings
 
-__all__ = ["Report", "report", "report_of", "require_drawing"]
+__all__ = ["Kept", "Report", "report", "report_of", "require_drawing"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +53,7 @@ def report(
     models: Iterable[str] | None = None,
     gate: Gate | None = None,
     pictures: bool = True,
+    mending: float = 5.0,
     time_limit: float | None = None,
     total_time_limit: float | None = None,
     jobs: int = 1,
@@ -69,6 +74,9 @@ def report(
         The heading of the page.
     pictures : bool
         Whether networks are drawn (those of up to 80 nodes) and attacks are played.
+    mending : float
+        Seconds for each network to find links that give it what ``gate`` asks and it lacks (without a gate, one more
+        r); 0 proposes nothing.
 
     Returns
     -------
@@ -86,7 +94,7 @@ def report(
     >>> made.survey.rows[0].r, "survives 1 malicious node" in made.html
     (2, True)
     """
-    kept: list[Findings] = []
+    kept = Kept(gate or Gate(), mending)
     require_drawing(pictures)
     found = survey(
         graphs,
@@ -98,14 +106,15 @@ def report(
         seed=seed,
         certificates=certificates,
         on_row=on_row,
-        on_findings=kept.append,
+        on_findings=kept.add,
     )
-    return report_of(found, kept, title=title, gate=gate, pictures=pictures)
+    return report_of(found, kept.findings, kept.proposals, title=title, gate=gate, pictures=pictures)
 
 
 def report_of(
     found: Survey,
     findings: Iterable[Findings],
+    proposals: Mapping[str, MendResult] = MappingProxyType({}),
     *,
     title: str = "Robustness report",
     gate: Gate | None = None,
@@ -119,14 +128,45 @@ def report_of(
         Its rows are shown.
     findings : iterable of Findings
         What ``survey(..., on_findings=...)`` handed out. A row without findings is shown without a picture.
+    proposals : mapping from name to MendResult
+        The links to propose.
     title, gate, pictures
         As for :func:`report`.
     """
     if not isinstance(title, str):
         raise InvalidParameter(f"title is text, not {title!r}")
     require_drawing(pictures)
-    sections = {each.row.network: section_of(each, with_pictures=pictures) for each in findings}
+    sections = {
+        each.row.network: section_of(each, with_pictures=pictures, mended=proposals.get(each.row.network))
+        for each in findings
+    }
     return Report(found, page.html(title, found, gate or Gate(), sections))
+
+
+class Kept:
+    """What a page needs of each network beside its row, collected while the survey runs.
+
+    Parameters
+    ----------
+    gate : Gate
+    seconds : float
+        For the links to propose for one network; 0: none.
+    """
+
+    def __init__(self, gate: Gate, seconds: float) -> None:
+        if not 0 <= seconds < math.inf:
+            raise InvalidParameter(f"mending is a number of seconds of at least 0, not {seconds!r}")
+        self.findings: list[Findings] = []
+        self.proposals: dict[str, MendResult] = {}
+        self._gate, self._seconds = gate, seconds
+
+    def add(self, findings: Findings) -> None:
+        """Keep what was found out about one network, and look for links that mend it."""
+        if self._seconds:
+            found = proposal_for(findings, self._gate, self._seconds)
+            if found is not None:
+                self.proposals[findings.row.network] = found
+        self.findings.append(findings)
 
 
 def require_drawing(pictures: bool) -> None:

@@ -123,9 +123,12 @@ def _part(k: int, row: Row, section: Section, models: Sequence[str]) -> str:
         played = film_html(section.film).replace("{clip}", f"clip{k}")
         told = f"{escape(section.film.claim)}. {escape(section.film.story)}."
         film = f"<h3>The attack that splits it</h3><p>{told}</p>{played}"
+    sentences = "".join(f"<p>{escape(each)}</p>" for each in section.mending)
+    mending = f"<h3>What would mend it</h3>{sentences}" if sentences else ""
     return (
         f"<details class='network' id='n{k}'><summary><h2>{escape(row.network)}</h2></summary>"
-        f"<p>{escape(in_words(row, models))}</p>{picture}{tolerance}{film}{_evidence(row, section)}</details>\n"
+        f"<p>{escape(in_words(row, models))}</p>{picture}{tolerance}{film}{mending}"
+        f"{_evidence(row, section)}</details>\n"
     )
 
 

@@ -13,7 +13,9 @@ from typing import Any
 from robustness.digraph import Digraph
 from robustness.figures.network import draw
 from robustness.figures.saving import new_figure
+from robustness.mending import MendResult
 from robustness.natural_order import in_natural_order
+from robustness.reporting.proposal import in_sentences
 from robustness.simulation.attacks import Attack
 from robustness.surveying.row import Findings
 from robustness.threat_models import ToleranceTable
@@ -58,6 +60,8 @@ class Section:
     models : tuple of (str, str)
         Each threat model and one sentence about it.
     film : Film or None
+    mending : tuple of str
+        What links would mend it, a sentence and the links; empty when nothing is proposed.
     certificate_digest : str
         SHA-256 of the certificate's file, empty when none was written.
     """
@@ -66,9 +70,10 @@ class Section:
     models: tuple[tuple[str, str], ...] = ()
     film: Film | None = None
     certificate_digest: str = field(default="")
+    mending: tuple[str, ...] = ()
 
 
-def section_of(findings: Findings, *, with_pictures: bool) -> Section:
+def section_of(findings: Findings, *, with_pictures: bool, mended: MendResult | None = None) -> Section:
     """Return what is shown of a network.
 
     Parameters
@@ -77,13 +82,16 @@ def section_of(findings: Findings, *, with_pictures: bool) -> Section:
         What its row was made from.
     with_pictures : bool
         Whether it is drawn, and an attack played, when it has at most 80 nodes.
+    mended : MendResult, optional
+        The links to propose.
     """
     row, graph = findings.row, findings.graph
     digest = sha256(Path(row.certificate).read_bytes()).hexdigest() if row.certificate else ""
+    mending = () if mended is None else tuple(in_sentences(mended))
     models = tuple((result.model, result.summary()) for result in findings.table.results)
     if not with_pictures or not 1 <= graph.n <= _LARGEST:
-        return Section(models=models, certificate_digest=digest)
-    return Section(_picture(graph, row.weakest), models, _film(findings.table), digest)
+        return Section(models=models, certificate_digest=digest, mending=mending)
+    return Section(_picture(graph, row.weakest), models, _film(findings.table), digest, mending)
 
 
 def _picture(graph: Digraph, weakest: Mapping[str, Any] | None) -> bytes:

@@ -20,6 +20,7 @@ from robustness.errors import InvalidParameter
 from robustness.figures.marking import marks_of
 from robustness.figures.network import draw_to_file
 from robustness.figures.placement import positions_in
+from robustness.figures.saving import new_figure
 from robustness.simulation import find_attack
 from robustness.traps import find_trap
 
@@ -261,3 +262,15 @@ class TestCommand:
         assert done.exit_code == 3
         assert done.stderr.count("\n") == 1
         assert not Path(target).exists()
+
+
+def test_no_node_of_a_flat_picture_is_cut_off() -> None:
+    figure = new_figure(7.2, 4.2)
+    axes = rb.draw(nx.cycle_graph(5), ({0, 1}, {3, 4}), ax=figure.subplots())
+    figure.draw_without_rendering()
+    box = axes.get_window_extent()
+    assert box.height > figure.bbox.height / 2
+    for group in (each for each in axes.collections if len(each.get_offsets())):
+        radius = (group.get_sizes()[0] ** 0.5) / 2 * figure.dpi / 72
+        for _, y in axes.transData.transform(group.get_offsets()):
+            assert box.y0 + radius <= y <= box.y1 - radius
