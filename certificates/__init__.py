@@ -3,6 +3,7 @@
 >>> from certificates import verify  # verify(graph_bytes, certificate_bytes) -> VerifiedClaim
 >>> from certificates import verify_joint  # verify_joint(sequence_bytes, certificate_bytes) -> VerifiedJointClaim
 >>> from certificates import verify_tolerance  # (graph_bytes, certificate_bytes) -> VerifiedToleranceClaim
+>>> from certificates import verify_mending  # (bytes of the graph before, certificate_bytes) -> VerifiedMendingClaim
 """
 
 from certificates.errors import (
@@ -13,6 +14,7 @@ from certificates.errors import (
     RejectedCertificate,
 )
 from certificates.joint import VerifiedJointClaim, verify_joint
+from certificates.mending import VerifiedMendingClaim, verify_mending
 from certificates.questions import Question, comparison, verify_any
 from certificates.tolerance import VerifiedToleranceClaim, verify_tolerance
 from certificates.verification import VerifiedClaim, verify
@@ -26,10 +28,12 @@ __all__ = [
     "RejectedCertificate",
     "VerifiedClaim",
     "VerifiedJointClaim",
+    "VerifiedMendingClaim",
     "VerifiedToleranceClaim",
     "comparison",
     "verify",
     "verify_any",
     "verify_joint",
+    "verify_mending",
     "verify_tolerance",
 ]

@@ -16,6 +16,8 @@ from certificates.envelope import split_header
 from certificates.errors import MalformedCertificate
 from certificates.joint import FORMAT as JOINT_FORMAT
 from certificates.joint import VerifiedJointClaim, verify_joint
+from certificates.mending import FORMAT as MENDING_FORMAT
+from certificates.mending import VerifiedMendingClaim, verify_mending
 from certificates.strict_json import parse
 from certificates.tolerance import FORMAT as TOLERANCE_FORMAT
 from certificates.tolerance import VerifiedToleranceClaim, verify_tolerance
@@ -23,12 +25,13 @@ from certificates.verification import FORMAT, VerifiedClaim, verify
 
 __all__ = ["Claim", "Question", "comparison", "format_of", "verify_any"]
 
-Claim = VerifiedClaim | VerifiedJointClaim | VerifiedToleranceClaim
+Claim = VerifiedClaim | VerifiedJointClaim | VerifiedToleranceClaim | VerifiedMendingClaim
 
 _VERIFIERS: dict[str, Callable[[bytes, bytes], Claim]] = {
     FORMAT: verify,
     JOINT_FORMAT: verify_joint,
     TOLERANCE_FORMAT: verify_tolerance,
+    MENDING_FORMAT: verify_mending,
 }
 
 
@@ -85,7 +88,8 @@ def format_of(certificate_bytes: bytes) -> str:
 
 
 def verify_any(subject_bytes: bytes, certificate_bytes: bytes) -> Claim:
-    """Verify a certificate of whichever kind: of robustness, of joint robustness, of what malicious nodes can do.
+    """Verify a certificate of whichever kind: of robustness, of joint robustness, of what malicious nodes can do, of
+    mending.
 
     ``subject_bytes`` is the canonical graph, or the canonical sequence for joint robustness.
     """
@@ -110,6 +114,8 @@ def comparison(claim: Claim, question: Question) -> tuple[bool, str]:
 
 def _implies(claim: Claim, question: Question) -> bool:
     """Return whether a claim whose other parts are as asked implies what is asked of r and s, or of f."""
+    if isinstance(claim, VerifiedMendingClaim):
+        return False
     if isinstance(claim, VerifiedToleranceClaim):
         if (question.verdict, question.faces, question.bound) != (claim.verdict, claim.faces, claim.bound):
             return False

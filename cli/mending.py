@@ -41,7 +41,18 @@ _GOAL_OPTIONS = (
 
 _KEEP_OPTIONS = (
     click.option("-o", "--output", type=FILE, metavar="FILE", help="Write the network with its new set of links."),
-    click.option("--certificate", type=FILE, metavar="FILE", help="Write a certificate that it reaches the goal."),
+    click.option(
+        "--certificate",
+        type=FILE,
+        metavar="FILE",
+        help="Write a certificate about GRAPH: the links reach the goal, and the violations behind the lower bound.",
+    ),
+    click.option(
+        "--goal-certificate",
+        type=FILE,
+        metavar="FILE",
+        help="Write a certificate that the result is as asked.",
+    ),
     click.option("--plot", "picture", type=FILE, metavar="FILE", help="Draw it, new links thick: .svg, .png or .pdf."),
 )
 
@@ -55,12 +66,13 @@ class Kept:
 
     output: Path | None
     certificate: Path | None
+    goal_certificate: Path | None
     picture: Path | None
 
     @property
     def paths(self) -> list[Path | None]:
-        """All three."""
-        return [self.output, self.certificate, self.picture]
+        """All of them."""
+        return [self.output, self.certificate, self.goal_certificate, self.picture]
 
 
 def goal_and_files(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -75,11 +87,13 @@ def goal_and_files(command: Callable[..., Any]) -> Callable[..., Any]:
         model: str | None,
         output: Path | None,
         certificate: Path | None,
+        goal_certificate: Path | None,
         picture: Path | None,
         **own: Any,
     ) -> Any:
         goals = goals_from(r, s, survive, model)
-        return command(*arguments, goals=goals, kept=Kept(output, certificate, picture), **own)
+        kept = Kept(output, certificate, goal_certificate, picture)
+        return command(*arguments, goals=goals, kept=kept, **own)
 
     for option in reversed((*_GOAL_OPTIONS, *_KEEP_OPTIONS)):
         with_goal = option(with_goal)
@@ -149,8 +163,7 @@ def tell(
         ctx.exit(code)
     after = _facts(found.graph) if found.cost is not None else None
     before = _facts(found.before)
-    if found.cost is not None:
-        _keep(console, query, found, kept)
+    _keep(console, query, found, kept)
     if query.as_json:
         facts = {"graph": graph_document(found.before), **found.as_dict(), "before": before, "after": after}
         console.document(schema, facts)
@@ -200,24 +213,40 @@ def _keep(
     found: MendResult,
     kept: Kept,
 ) -> None:
-    """Write the mended network, a certificate of its goal, and a picture."""
-    from robustness.files import replace_file, write_topology
+    """Write the mended network, its certificates, and a picture."""
+    from robustness.files import write_topology
 
+    if kept.certificate is not None:
+        from robustness.mending import certify_mending
+
+        _write(console, kept.certificate, certify_mending(found, **_effort(query)))
+    if found.cost is None:
+        return
     if kept.output is not None:
         write_topology(found.graph, kept.output)
         console.talk(f"wrote {kept.output}")
-    if kept.certificate is not None:
-        data = _certificate(found, query)
-        if data is None:
-            console.talk("no certificate: a limit was reached, or the kernel has no evidence of this kind")
-        else:
-            replace_file(kept.certificate, data)
-            console.talk(f"wrote {kept.certificate} ({len(data):,} bytes, verified)")
+    if kept.goal_certificate is not None:
+        _write(console, kept.goal_certificate, _certificate(found, query))
     if kept.picture is not None:
         from robustness.figures.network import draw_to_file
 
         draw_to_file(found.graph, found, kept.picture)
         console.talk(f"wrote {kept.picture}")
+
+
+def _effort(query: Query) -> dict[str, Any]:
+    effort = query.effort()
+    return {name: effort[name] for name in ("time_limit", "jobs", "seed")}
+
+
+def _write(console: Console, path: Path, data: bytes | None) -> None:
+    from robustness.files import replace_file
+
+    if data is None:
+        console.talk("no certificate: a limit was reached, or the kernel has no evidence of this kind")
+    else:
+        replace_file(path, data)
+        console.talk(f"wrote {path} ({len(data):,} bytes, verified)")
 
 
 def _certificate(found: MendResult, query: Query) -> bytes | None:

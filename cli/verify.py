@@ -15,6 +15,7 @@ from .query import speaking
 
 if TYPE_CHECKING:
     from certificates.questions import Claim
+    from robustness.mending import Confirmation
 
 __all__ = ["SCHEMA", "command"]
 
@@ -41,6 +42,9 @@ SCHEMA = "robustness/verify/1"
     show_default=True,
     help="verified: the checker that is proved correct, which 'make formal' builds; for certificates of robustness.",
 )
+@click.option(
+    "--timeout", type=float, metavar="SECONDS", help="Of a mending certificate: for the solver that confirms the bound."
+)
 @json_option
 @speaking
 def command(
@@ -55,13 +59,16 @@ def command(
     f: int | None,
     model: str | None,
     checker: str,
+    timeout: float | None,
     as_json: bool,
 ) -> None:
     """Verify CERTIFICATE, of any kind, for GRAPH and compare the claim that it proves with the question asked.
 
     For a certificate of joint robustness GRAPH is the sequence that 'joint --canonical' wrote. A claim that implies the
-    one asked for answers too. Exit code 0: it proves its claim, and the claim answers the question. 10: it does not. 3:
-    a file is malformed. Without a question the claim is printed, and said to be compared with none.
+    one asked for answers too. Of a mending certificate, about the network before mending, the kernel verifies all but
+    the lower bound, which HiGHS confirms from the certificate alone. Exit code 0: it proves its claim, and the claim
+    answers the question. 10: it does not. 3: a file is malformed. 30: HiGHS did not decide in time. Without a question
+    the claim is printed, and said to be compared with none.
     """
     from certificates.envelope import MAX_CERTIFICATE_BYTES
     from certificates.questions import Question, comparison
@@ -78,6 +85,9 @@ def command(
         raise UnreadableTopology(f"{certificate}: cannot be read: {problem.strerror}") from None
     claim = _verified(source, data) if checker == "python" else _verified_formally(source, data)
     answers, how = comparison(claim, question)
+    confirmation = _confirmed(source, data, timeout) if answers and hasattr(claim, "least") else None
+    if confirmation is not None:
+        _tell_confirmation(ctx, console, confirmation, how, as_json=as_json)
     if as_json:
         console.document(SCHEMA, _document(claim) | {"as_asked": answers, "comparison": how, "checker": checker})
     elif answers:
@@ -92,11 +102,41 @@ def command(
 def _verified(source: str, certificate: bytes) -> Claim:
     """Return what the certificate proves about the graph or the sequence of graphs that ``source`` names."""
     from certificates.joint import FORMAT as JOINT_FORMAT
+    from certificates.mending import FORMAT as MENDING_FORMAT
     from certificates.questions import format_of, verify_any
 
-    if format_of(certificate) == JOINT_FORMAT:
+    kind = format_of(certificate)
+    if kind == JOINT_FORMAT:
         return verify_any(_sequence_bytes(source), certificate)
+    if kind == MENDING_FORMAT:
+        return verify_any(_mended_bytes(source, certificate), certificate)
     return verify_any(load_graph(source).canonical_bytes(), certificate)
+
+
+def _mended_bytes(source: str, certificate: bytes) -> bytes:
+    """Return what a mending certificate is about: the network, or of thinning its nodes without any link."""
+    from robustness.mending.rebuilding import subject_of
+
+    return subject_of(load_graph(source), certificate).canonical_bytes()
+
+
+def _confirmed(source: str, certificate: bytes, timeout: float | None) -> Confirmation:
+    from robustness.mending import confirm_least
+
+    return confirm_least(_mended_bytes(source, certificate), certificate, time_limit=timeout)
+
+
+def _tell_confirmation(
+    ctx: click.Context, console: Console, confirmation: Confirmation, how: str, *, as_json: bool
+) -> None:
+    """Print what the kernel proved and what the solver says, and end with the exit code."""
+    codes = {"confirmed": ExitCode.DONE, "refuted": ExitCode.REFUTED, "undecided": ExitCode.UNDECIDED}
+    if as_json:
+        said = {"bound": confirmation.verdict.value, "solver": "highs"}
+        console.document(SCHEMA, _document(confirmation.claim) | {"as_asked": True, "comparison": how} | said)
+    else:
+        console.result(f"verified: {confirmation.claim}; {how}\n{confirmation}")
+    ctx.exit(codes[confirmation.verdict.value])
 
 
 def _verified_formally(source: str, certificate: bytes) -> Claim:
@@ -129,5 +169,6 @@ def _sequence_bytes(source: str) -> bytes:
 
 def _document(claim: Claim) -> dict[str, object]:
     """Return what a claim says, as far as claims of its kind say it."""
-    names = ("verdict", "r", "s", "window", "f", "faces", "bound", "evidence", "sha256", "tree_nodes")
+    names = ["verdict", "r", "s", "window", "f", "faces", "bound", "evidence", "sha256", "tree_nodes"]
+    names += ["goal", "cost", "least", "links", "violations", "mended_sha256"]
     return {name: getattr(claim, name) for name in names if hasattr(claim, name)}

@@ -44,6 +44,7 @@ WORDS_OF_THE_HOUSE = {
     "growth": "a robust seed from which all nodes grow",
     "joint": "joint robustness over windows, in the kernel, on the command line and in a figure",
     "tolerance": "what a network tolerates, in the kernel and on the command line",
+    "mending": "links that reach a goal, in the kernel and on the command line",
     "registry": "a table of names that users type",
     "wording": "sentences about the room's results",
     "page": "the page that the room writes",

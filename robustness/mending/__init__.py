@@ -2,9 +2,23 @@
 
 from __future__ import annotations
 
+from robustness.mending.certification import certify_mending
 from robustness.mending.front import mend, thin
 from robustness.mending.goal import Goal
 from robustness.mending.losses import Margin, margin
+from robustness.mending.rebuilding import Confirmation, LeastVerdict, confirm_least
 from robustness.mending.results import MendResult, MendVerdict
 
-__all__ = ["Goal", "Margin", "MendResult", "MendVerdict", "margin", "mend", "thin"]
+__all__ = [
+    "Confirmation",
+    "Goal",
+    "LeastVerdict",
+    "Margin",
+    "MendResult",
+    "MendVerdict",
+    "certify_mending",
+    "confirm_least",
+    "margin",
+    "mend",
+    "thin",
+]

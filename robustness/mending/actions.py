@@ -44,6 +44,8 @@ class Actions:
     uniform : bool
         Whether every link that is not there can be added, all at one cost, without constraints: then nodes that
         cannot be told apart in the network cannot be told apart in the question.
+    one_way : bool
+        Whether an action is one arc, not one each way.
     """
 
     items: tuple[Action, ...]
@@ -51,6 +53,7 @@ class Actions:
     required: frozenset[int]
     most: tuple[int, ...] | None
     uniform: bool
+    one_way: bool = False
 
     def price(self, units: int) -> int | float:
         """Return a cost as people write it."""
@@ -101,7 +104,7 @@ def actions_for(
         most = tuple(max(0, max_in_degree - degree) for degree in graph.in_degrees.tolist())
     uniform = candidates is None and len(set(prices)) <= 1 and not forbidden and not required and most is None
     wanted = frozenset(k for k, item in enumerate(items) if item.ends in required)
-    return Actions(items, scale, wanted, most, uniform)
+    return Actions(items, scale, wanted, most, uniform, one_way)
 
 
 def _every(n: int, one_way: bool) -> Iterable[tuple[int, int]]:

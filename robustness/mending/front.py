@@ -13,7 +13,7 @@ from robustness.mending.actions import Actions, CostLike, Link, actions_for
 from robustness.mending.demands import sets_of
 from robustness.mending.goal import Goal, Part, goals_of, parts_of
 from robustness.mending.hitting_set import Search, with_actions
-from robustness.mending.results import Demand, MendResult, MendVerdict
+from robustness.mending.results import Demand, MendResult, MendVerdict, Problem
 from robustness.natural_order import natural_key
 from robustness.traps.question import Sets
 from robustness.whole_numbers import taking_numpy_integers
@@ -220,7 +220,18 @@ def _result(search: Search, goals: tuple[Goal, ...], one_way: bool, seconds: flo
         one_way=one_way,
         reason=search.reason,
         seconds=seconds,
+        problem=_problem(search),
     )
+
+
+def _problem(search: Search) -> Problem:
+    pairs: tuple[tuple[Part, Sets], ...]
+    if search.is_impossible and search.witness is not None:
+        pairs = (search.witness,) if search.witness[1].S1 else ()
+    else:
+        pairs = tuple((first.part, sets_of(first, second)) for first, second in search.rows)
+    least = None if search.is_impossible else search.bound
+    return Problem(search.graph, search.actions, tuple(search.parts), search.best, least, pairs)
 
 
 def _demand(part: Part, graph: Digraph, sets: Sets) -> Demand:

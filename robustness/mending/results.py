@@ -9,11 +9,13 @@ from typing import Any
 
 from certificates.graph import Label
 from robustness.digraph import Digraph, GraphLike
-from robustness.mending.goal import Goal
+from robustness.mending.actions import Actions
+from robustness.mending.goal import Goal, Part
 from robustness.natural_order import natural_key
 from robustness.showing import Shown
+from robustness.traps.question import Sets
 
-__all__ = ["Demand", "MendResult", "MendVerdict"]
+__all__ = ["Demand", "MendResult", "MendVerdict", "Problem"]
 
 Link = tuple[Label, Label]
 
@@ -44,6 +46,32 @@ class Demand:
     S2: frozenset[Label]
 
 
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """The question behind a result, in ids: what a certificate of it speaks about.
+
+    Attributes
+    ----------
+    graph : Digraph
+        To which links are added; of :func:`robustness.thin` the nodes without any link.
+    actions : Actions
+    parts : tuple of Part
+    chosen : frozenset of int or None
+        Indices of the chosen actions.
+    least : int or None
+        The lower bound in units of the actions' scale; None when no choice reaches the goal.
+    pairs : tuple of (Part, Sets)
+        Violations of ``graph`` from which the bound follows.
+    """
+
+    graph: Digraph
+    actions: Actions
+    parts: tuple[Part, ...]
+    chosen: frozenset[int] | None
+    least: int | None
+    pairs: tuple[tuple[Part, Sets], ...]
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class MendResult(Shown):
     """The cheapest links that reach a goal, as far as they are known.
@@ -72,6 +100,8 @@ class MendResult(Shown):
     one_way : bool
     reason : str
         Why nothing more is known, empty otherwise.
+    problem : Problem or None
+        The question in ids, for :func:`robustness.mending.certify_mending`.
     seconds : float
     """
 
@@ -88,6 +118,7 @@ class MendResult(Shown):
     one_way: bool = False
     reason: str = ""
     seconds: float = field(default=0.0, compare=False)
+    problem: Problem | None = field(default=None, repr=False, compare=False)
 
     def __bool__(self) -> bool:
         raise TypeError("a MendResult has no truth value: compare .verdict")

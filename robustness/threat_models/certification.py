@@ -34,7 +34,7 @@ from robustness.results import Verdict
 from robustness.threat_models.results import AttackSets, ToleranceResult
 from robustness.traps.question import Question
 
-__all__ = ["ToleranceCertificates", "certify_tolerance"]
+__all__ = ["ToleranceCertificates", "certify_promise", "certify_tolerance"]
 
 #: Beyond this many sets M a certificate of "no trap" is not worth its size.
 _MOST_REMOVALS = 5_000
@@ -82,8 +82,17 @@ def certify_tolerance(
     work = _Work(result.graph, Limits.of(time_limit, jobs, seed, progress))
     guaranteed = None
     if result.graph.n >= 2 and result.guaranteed >= 0:
-        guaranteed = work.promise_over_time(result) if result.over_time else work.promise(result)
+        over_time, question = result.over_time, result.threat.question(result.guaranteed)
+        guaranteed = work.promise_over_time(result) if over_time else work.promise(question)
     return ToleranceCertificates(guaranteed, _refutation(result))
+
+
+def certify_promise(graph: Digraph, question: Question, limits: Limits) -> bytes | None:
+    """Return a certificate that no sets answer a question about traps; None when none was found.
+
+    With one face in total it is an ordinary one, of (f+1,f+1)-robustness.
+    """
+    return _Work(graph, limits).promise(question)
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,16 +102,15 @@ class _Work:
     graph: Digraph
     limits: Limits
 
-    def promise(self, result: ToleranceResult) -> bytes | None:
-        f = result.guaranteed
-        threat = result.threat
-        if threat.question(f) == Question(f, two_faces=False):
+    def promise(self, question: Question) -> bytes | None:
+        f, two_faces, local = question
+        if question == Question(f, two_faces=False):
             return self.robust(self.graph, f + 1, f + 1)
         twice = self.robust(self.graph, 2 * f + 1)
         if twice is not None:
-            faces, bound = 2 if threat.two_faces else 1, "local" if threat.local else "total"
+            faces, bound = 2 if two_faces else 1, "local" if local else "total"
             return _tolerance(self.graph, f, faces, bound, "together", {"kind": "robust"}, twice)
-        return self.removals(f) if threat.two_faces and not threat.local else None
+        return self.removals(f) if two_faces and not local else None
 
     def promise_over_time(self, result: ToleranceResult) -> bytes | None:
         """Return a certificate that the sequence is jointly (2f+1)-robust, over the smallest number of steps."""

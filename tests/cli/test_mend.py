@@ -35,7 +35,7 @@ def run(*arguments: object) -> Result:
 def test_mended_certified_drawn_and_verified(platoon: Path, tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     mended, certificate, picture = (tmp_path / name for name in ("mended.json", "mended.cert", "mended.svg"))
-    done = run("mend", platoon, "-r", 2, "-s", 2, "-o", mended, "--certificate", certificate, "--plot", picture)
+    done = run("mend", platoon, "-r", 2, "-s", 2, "-o", mended, "--goal-certificate", certificate, "--plot", picture)
     assert done.exit_code == ExitCode.DONE, done.output
     assert done.stdout.startswith("optimal: 4 links, cost 4; nothing cheaper")
     assert done.stdout.count("  add  ") == 4
@@ -47,6 +47,33 @@ def test_mended_certified_drawn_and_verified(platoon: Path, tmp_path: Path) -> N
     command = ["-I", "-m", "certificates", "verify", str(canonical), str(certificate), "--expect", "robust", "-r", "2"]
     checked = subprocess.run([sys.executable, *command], capture_output=True, text=True, check=False)
     assert checked.returncode == 0, checked.stderr
+
+
+def test_the_certificate_of_the_least_cost_is_verified(platoon: Path, tmp_path: Path) -> None:
+    certificate, canonical = tmp_path / "mending.cert", tmp_path / "path.graph"
+    done = run("mend", platoon, "-r", 2, "-s", 2, "--certificate", certificate)
+    assert "verified" in done.stderr
+    verified = run("verify", platoon, certificate)
+    assert verified.exit_code == ExitCode.DONE, verified.output
+    assert "HiGHS confirms that to break them all costs at least 4" in verified.stdout
+    found = json.loads(run("verify", platoon, certificate, "--json").stdout)
+    assert (found["cost"], found["least"], found["bound"], found["solver"]) == (4, 4, "confirmed", "highs")
+    assert run("verify", platoon, certificate, "--timeout", "0.001").exit_code in (ExitCode.DONE, ExitCode.UNDECIDED)
+    assert run("verify", platoon, certificate, "--expect", "robust").exit_code == ExitCode.REFUTED
+    canonical.write_bytes(rb.read_topology(platoon).canonical_bytes())
+    command = ["-I", "-m", "certificates", "verify", str(canonical), str(certificate)]
+    checked = subprocess.run([sys.executable, *command], capture_output=True, text=True, check=False)
+    assert checked.returncode == 0, checked.stderr
+    assert "left to a solver" in checked.stdout
+    forged = tmp_path / "forged.cert"
+    forged.write_bytes(certificate.read_bytes().replace(b'"pairs":[', b'"pairs":[[0,[],[1],[3]],'))
+    assert run("verify", platoon, forged).exit_code == ExitCode.REFUTED
+
+
+def test_a_certificate_of_thinning_is_verified_with_the_network(tmp_path: Path) -> None:
+    write_topology(nx.complete_graph(5), tmp_path / "five.json")
+    assert run("thin", tmp_path / "five.json", "-r", 2, "--certificate", tmp_path / "t.cert").exit_code == ExitCode.DONE
+    assert run("verify", tmp_path / "five.json", tmp_path / "t.cert").exit_code == ExitCode.DONE
 
 
 def test_json(platoon: Path) -> None:

@@ -1,0 +1,238 @@
+r"""The lower bound checked again, from a certificate alone, by another solver: HiGHS.
+
+Nothing here is shared with the search. The kernel verifies the certificate: each of its pairs is a violation of the
+network before mending. From the same bytes the master problem is built anew, row by row, as docs/certificate-format.md
+states it: over ``x_a`` (a link is chosen), ``y_iO`` (node i hears enough of the set O) and for each side of a pair
+``f_S`` (all its normal nodes do), all 0 or 1::
+
+    sum of the links that bring i an arc from O  >=  (enough - what i hears of O already) y_iO
+    f_S <= y_iO                                                                  every normal i of S
+    sum over both sides of y, and of s f_S        >=  s                          (r,s)-robustness
+    sum over both sides of y, and of z            >=  1                          traps and violations
+    caps and required links
+
+and, where every link that is not there can be added at one cost without constraints, for nodes u < v that hear and are
+heard by the same others: u gains at least as many links as v. Swapping such nodes changes neither the network nor the
+cost, so some cheapest choice that reaches the goal is of this form, and every choice that reaches the goal breaks
+every violation. ``z`` is 0 but for a local bound: then the ``y`` of every node outside M to hear f + 1 of M. The model
+is asked for a choice that costs less than the certificate claims. HiGHS computes with floating-point numbers, to a
+tolerance of 1e-6; all data are integers.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections import defaultdict
+from collections.abc import Iterable
+from dataclasses import dataclass
+from datetime import timedelta
+from typing import Any
+
+from certificates.envelope import split_header
+from certificates.errors import MalformedCertificate, RejectedCertificate
+from certificates.graph import decode_graph
+from certificates.mending import VerifiedMendingClaim, verify_mending
+from certificates.strict_json import parse
+from robustness.digraph import Digraph
+from robustness.limits import Limits
+from robustness.waiting import in_a_thread
+
+__all__ = ["Confirmation", "LeastVerdict", "confirm_least", "subject_of"]
+
+
+class LeastVerdict(enum.Enum):
+    """What the second solver says about the least cost that a certificate claims."""
+
+    #: No choice that breaks all violations costs less.
+    CONFIRMED = "confirmed"
+    #: There is one: the bound does not follow from these violations.
+    REFUTED = "refuted"
+    #: A limit was reached.
+    UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True, slots=True)
+class Confirmation:
+    """What the kernel proved, and what the second solver says about the rest.
+
+    Attributes
+    ----------
+    claim : VerifiedMendingClaim
+    verdict : LeastVerdict
+    cheaper : tuple of pairs of ids
+        When refuted: links that break all violations of the certificate and cost less than it claims.
+    """
+
+    claim: VerifiedMendingClaim
+    verdict: LeastVerdict
+    cheaper: tuple[tuple[int, int], ...] = ()
+
+    def __str__(self) -> str:
+        least = self.claim.least
+        what = "no choice breaks them all" if least is None else f"to break them all costs at least {least}"
+        if self.verdict is LeastVerdict.CONFIRMED:
+            return f"HiGHS confirms that {what}"
+        if self.verdict is LeastVerdict.REFUTED:
+            return f"HiGHS finds {len(self.cheaper)} links that break them all and cost less than the certificate says"
+        return f"HiGHS did not decide within the limit whether {what}"
+
+
+def confirm_least(graph_bytes: bytes, certificate_bytes: bytes, *, time_limit: float | None = None) -> Confirmation:
+    """Verify a mending certificate, and have its lower bound confirmed by HiGHS from the certificate alone.
+
+    Parameters
+    ----------
+    graph_bytes, certificate_bytes : bytes
+        As for :func:`certificates.verify_mending`.
+    time_limit : float, optional
+        Wall-clock seconds for the solver; past it the bound is UNDECIDED, and what the kernel proved still holds.
+
+    Returns
+    -------
+    Confirmation
+
+    Raises
+    ------
+    CertificateError
+        When the kernel refuses the certificate.
+
+    >>> import networkx as nx
+    >>> import robustness as rb
+    >>> from robustness.mending import certify_mending
+    >>> path = rb.Digraph.from_networkx(nx.path_graph(5))
+    >>> print(confirm_least(path.canonical_bytes(), certify_mending(rb.mend(path, 2))))
+    HiGHS confirms that to break them all costs at least 2
+    """
+    limits = Limits.of(time_limit)
+    claim = verify_mending(graph_bytes, certificate_bytes)
+    if claim.least == 0:
+        return Confirmation(claim, LeastVerdict.CONFIRMED)
+    document = parse(split_header(certificate_bytes)[0], MalformedCertificate, "the certificate")
+    rebuilt = _Rebuilt(decode_graph(graph_bytes).hears, document)
+    return rebuilt.cheaper_than(claim, limits)
+
+
+def subject_of(graph: Digraph, certificate_bytes: bytes) -> Digraph:
+    """Return what a mending certificate that goes with a graph is about.
+
+    The graph itself, or, when it is a certificate of thinning, its nodes without any link: then every action is one of
+    the graph's own links.
+    """
+    document = parse(split_header(certificate_bytes)[0], MalformedCertificate, "the certificate")
+    empty = Digraph(graph.labels, [], directed=graph.directed)
+    if not isinstance(document, dict) or document.get("graph") != empty.sha256 or graph.arc_count == 0:
+        return graph
+    own = set(graph.arcs())
+    actions = document.get("actions")
+    links = actions.get("links") if isinstance(actions, dict) else None
+    if not isinstance(links, list) or any(not isinstance(each, list) or len(each) != 3 for each in links):
+        raise MalformedCertificate("the links of a mending certificate are [u, v, cost]")
+    if any((u, v) not in own for u, v, _ in links):
+        raise RejectedCertificate("the certificate chooses among links that the network does not have")
+    if len(links) * (1 if document["actions"].get("one_way") else 2) != len(own):
+        raise RejectedCertificate("the certificate leaves out links of the network: it may keep them for less")
+    return empty
+
+
+class _Rebuilt:
+    """The master problem of a certificate that the kernel has verified."""
+
+    def __init__(self, hears: Iterable[Iterable[int]], document: dict[str, Any]) -> None:
+        from ortools.math_opt.python import mathopt
+
+        self._sum = mathopt.fast_sum
+        self._hears = [frozenset(heard) for heard in hears]
+        self._n = len(self._hears)
+        actions = document["actions"]
+        self._links = [(u, v) for u, v, _ in actions["links"]]
+        self._model = mathopt.Model(name="mending")
+        self._x = [self._model.add_binary_variable() for _ in self._links]
+        self._cost = self._sum(cost * x for (_, _, cost), x in zip(actions["links"], self._x, strict=True))
+        self._into: dict[int, list[tuple[int, Any]]] = defaultdict(list)
+        for (u, v), x in zip(self._links, self._x, strict=True):
+            for tail, head in ((u, v),) if actions["one_way"] else ((u, v), (v, u)):
+                if tail not in self._hears[head]:
+                    self._into[head].append((tail, x))
+        self._hears_enough: dict[tuple[int, frozenset[int], int], Any] = {}
+        for a in actions["required"]:
+            self._model.add_linear_constraint(self._x[a] == 1)
+        for i, most in enumerate(actions["most"] or ()):
+            self._model.add_linear_constraint(self._sum(x for _, x in self._into[i]) <= most)
+        if self._all_alike(actions):
+            self._order_twins()
+        for k, *sets in document["pairs"]:
+            self._break(document["claim"]["parts"][k], *map(frozenset, sets))
+
+    def _all_alike(self, actions: dict[str, Any]) -> bool:
+        """Return whether every link that is not there can be added, all at one cost, without constraints."""
+        costs = {cost for *_, cost in actions["links"]}
+        arcs = sum(map(len, self._into.values())) + sum(map(len, self._hears))
+        complete = arcs == self._n * (self._n - 1)
+        return complete and len(costs) == 1 and not actions["required"] and actions["most"] is None
+
+    def _order_twins(self) -> None:
+        """Nodes that hear and are heard by the same others can be swapped: the first of two gains no less."""
+        heard_by: list[set[int]] = [set() for _ in range(self._n)]
+        for i, heard in enumerate(self._hears):
+            for j in heard:
+                heard_by[j].add(i)
+        for u in range(self._n):
+            for v in range(u + 1, self._n):
+                if all(near[u] - {v} == near[v] - {u} for near in (self._hears, heard_by)):
+                    mutual = (v in self._hears[u]) == (u in self._hears[v])
+                    if mutual:
+                        first, second = (self._sum(x for _, x in self._into[i]) for i in (u, v))
+                        self._model.add_linear_constraint(first >= second)
+
+    def _break(self, part: dict[str, Any], M: frozenset[int], S1: frozenset[int], S2: frozenset[int]) -> None:
+        """Add the row of one pair."""
+        everybody = frozenset(range(self._n))
+        robust = "r" in part
+        enough, s = (part["r"], part["s"]) if robust else (part["f"] + 1, 1)
+        terms = []
+        for S in (S1, S2):
+            around = everybody - S - (M if not robust and part["faces"] == 2 else frozenset())
+            met = [self._unit(i, around, enough) for i in sorted(S - M)]
+            terms += met
+            if s > 1:
+                full = self._model.add_binary_variable()
+                for each in met:
+                    self._model.add_linear_constraint(full <= each)
+                terms.append(s * full)
+        if not robust and part["bound"] == "local":
+            terms += [self._unit(i, M, enough) for i in sorted(everybody - M)]
+        self._model.add_linear_constraint(self._sum(terms) >= s)
+
+    def _unit(self, i: int, around: frozenset[int], enough: int) -> Any:
+        key = (i, around, enough)
+        if key not in self._hears_enough:
+            met = self._model.add_binary_variable()
+            missing = enough - len(self._hears[i] & around)
+            supply = self._sum(x for tail, x in self._into[i] if tail in around)
+            if missing > 0:
+                self._model.add_linear_constraint(supply >= missing * met)
+            self._hears_enough[key] = met
+        return self._hears_enough[key]
+
+    def cheaper_than(self, claim: VerifiedMendingClaim, limits: Limits) -> Confirmation:
+        """Return whether a choice breaks all pairs and costs less than the certificate claims."""
+        from ortools.math_opt.python import mathopt
+
+        if claim.least is not None:
+            self._model.add_linear_constraint(self._cost <= claim.least - 1)
+        self._model.minimize(self._cost)
+        seconds = None if limits.deadline is None else timedelta(seconds=max(limits.seconds_left(), 1e-3))
+        parameters = mathopt.SolveParameters(time_limit=seconds)
+        reached = mathopt.TerminationReason
+
+        def work() -> Any:
+            return mathopt.solve(self._model, mathopt.SolverType.HIGHS, params=parameters)
+
+        found = in_a_thread("robustness-highs", work)
+        if found.termination.reason in (reached.OPTIMAL, reached.FEASIBLE):
+            values = found.variable_values()
+            chosen = tuple(ends for ends, x in zip(self._links, self._x, strict=True) if values[x] > 0.5)
+            return Confirmation(claim, LeastVerdict.REFUTED, chosen)
+        # Every variable lies between 0 and 1, so that nothing here is unbounded.
+        confirmed = found.termination.reason in (reached.INFEASIBLE, reached.INFEASIBLE_OR_UNBOUNDED)
+        return Confirmation(claim, LeastVerdict.CONFIRMED if confirmed else LeastVerdict.UNDECIDED)
