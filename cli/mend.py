@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .mending import FILE, Kept, answer, goal_and_files, links_in, tell
+from .mending import FILE, Kept, answer, goal_and_files, links_in, tell, tell_bought
 from .options import graph_argument, load_graph
 from .output import Console
 from .query import Query, query_options
@@ -34,6 +34,9 @@ SCHEMA = "robustness/mend/1"
 @click.option("--forbid", type=FILE, metavar="FILE", help="A network whose links may not be added.")
 @click.option("--require", "required", type=FILE, metavar="FILE", help="A network whose links have to be added.")
 @click.option("--max-in-degree", type=click.IntRange(min=0), metavar="D", help="No node that gains links hears more.")
+@click.option(
+    "--budget", type=float, metavar="B", help="Links for B together at most; without a goal, the most they buy."
+)
 @click.option("--one-way", is_flag=True, help="Add single arcs, also to an undirected network.")
 @query_options()
 def command(
@@ -49,16 +52,18 @@ def command(
     forbid: Path | None,
     required: Path | None,
     max_in_degree: int | None,
+    budget: float | None,
     one_way: bool,
 ) -> None:
     """Which links make GRAPH robust, at least cost?
 
     The goal is -r R [-s S], or --survive F [--model M], or both. Positions for --range and --cost distance are those of
     the file. Exit code 0: these links, and nothing cheaper. 30: these links, or none yet, and a lower bound. 10: no
-    choice of these candidates does it. Ctrl-C prints the best links so far, checked, and the lower bound.
+    choice of these candidates, within --budget, does it. With --budget and no goal: the greatest r, and then s, of
+    (r,s)-robustness that the budget buys. Ctrl-C prints the best links so far, checked, and the lower bound.
     """
     from robustness.files.writing import require_different_files
-    from robustness.mending import MendResult, mend
+    from robustness.mending import MendResult, best_within, mend
     from robustness.mending.front import links_within
 
     if candidates is not None and reach is not None:
@@ -70,20 +75,27 @@ def command(
     forbidden, needed = links_in(forbid, graph) or [], links_in(required, graph) or []
     price = None if cost == "one" else _distances(places)
 
-    def work(line: Any, keep: Any) -> MendResult:
-        return mend(
-            graph,
-            goals,
-            candidates=wanted,
-            cost=price,
-            forbid=forbidden,
-            require=needed,
-            max_in_degree=max_in_degree,
-            one_way=True if one_way else None,
-            on_improvement=keep,
-            **query.effort(line),
-        )
+    constraints: dict[str, Any] = {
+        "candidates": wanted,
+        "cost": price,
+        "forbid": forbidden,
+        "require": needed,
+        "max_in_degree": max_in_degree,
+        "one_way": True if one_way else None,
+    }
 
+    def work(line: Any, keep: Any) -> MendResult:
+        return mend(graph, goals, budget=budget, on_improvement=keep, **constraints, **query.effort(line))
+
+    if not goals and budget is not None:
+        tell_bought(
+            ctx,
+            console,
+            query,
+            SCHEMA,
+            lambda line: best_within(graph, budget, **constraints, **query.effort(line)),
+            kept,
+        )
     found, is_interrupted = answer(console, query, work)
     tell(ctx, console, query, SCHEMA, found, is_interrupted=is_interrupted, kept=kept)
 

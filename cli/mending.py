@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from collections.abc import Hashable
 
     from robustness.digraph import Digraph
-    from robustness.mending import Goal, MendResult
+    from robustness.mending import BudgetResult, Goal, MendResult
 
-__all__ = ["FILE", "Kept", "answer", "goal_and_files", "goals_from", "links_in", "tell"]
+__all__ = ["FILE", "Kept", "answer", "goal_and_files", "goals_from", "links_in", "tell", "tell_bought"]
 
 #: A file that is read or written whole.
 FILE = click.Path(dir_okay=False, path_type=Path)
@@ -91,7 +91,8 @@ def goal_and_files(command: Callable[..., Any]) -> Callable[..., Any]:
         picture: Path | None,
         **own: Any,
     ) -> Any:
-        goals = goals_from(r, s, survive, model)
+        asked = r is not None or survive is not None or s is not None or model is not None
+        goals = goals_from(r, s, survive, model) if asked or own.get("budget") is None else ()
         kept = Kept(output, certificate, goal_certificate, picture)
         return command(*arguments, goals=goals, kept=kept, **own)
 
@@ -176,6 +177,32 @@ def tell(
     ctx.exit(codes.get(found.verdict.value, ExitCode.UNDECIDED))
 
 
+def tell_bought(
+    ctx: click.Context,
+    console: Console,
+    query: Query,
+    schema: str,
+    work: Callable[[ProgressLine], BudgetResult],
+    kept: Kept,
+) -> None:
+    """Print what a budget buys, write what was asked for, and end with the exit code that it deserves."""
+    with ProgressLine(console) as line:
+        bought = query.wait_for(lambda: work(line), line)
+    best = bought.best
+    if best is None:
+        console.error(bought.summary())
+        ctx.exit(ExitCode.REFUTED if bought.is_exact else ExitCode.UNDECIDED)
+    _keep(console, query, best, kept)
+    before, after = _facts(best.before), _facts(best.graph)
+    if query.as_json:
+        missed = None if bought.missed is None else bought.missed.goal
+        facts = {"graph": graph_document(best.before), **best.as_dict(), "before": before, "after": after}
+        console.document(schema, facts | {"missed": missed, "is_exact": bought.is_exact})
+    else:
+        console.result("\n".join([bought.summary(), *_lines(best, before, after)[1:]]))
+    ctx.exit(ExitCode.DONE if bought.is_exact else ExitCode.UNDECIDED)
+
+
 def _facts(graph: Digraph) -> dict[str, Any]:
     """Return how many links there are, and on few nodes r* and s; on more they can take longer than the answer did."""
     from robustness.decision.front import determine_robustness
@@ -219,7 +246,7 @@ def _keep(
     if kept.certificate is not None:
         from robustness.mending import certify_mending
 
-        _write(console, kept.certificate, certify_mending(found, **_effort(query)))
+        _write(console, kept.certificate, certify_mending(found, **query.effort()))
     if found.cost is None:
         return
     if kept.output is not None:
@@ -232,11 +259,6 @@ def _keep(
 
         draw_to_file(found.graph, found, kept.picture)
         console.talk(f"wrote {kept.picture}")
-
-
-def _effort(query: Query) -> dict[str, Any]:
-    effort = query.effort()
-    return {name: effort[name] for name in ("time_limit", "jobs", "seed")}
 
 
 def _write(console: Console, path: Path, data: bytes | None) -> None:

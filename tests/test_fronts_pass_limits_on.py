@@ -13,7 +13,7 @@ import networkx as nx
 import pytest
 
 import robustness as rb
-from robustness import threat_models, time_varying, traps
+from robustness import mending, threat_models, time_varying, traps
 from robustness.decision.algorithms import subset_search
 from robustness.limits import Limits, Progress
 from robustness.simulation import find_attack
@@ -36,6 +36,10 @@ def joint_certificate(**effort: Any) -> None:
     time_varying.joint_certificate(SEQUENCE, time_varying.check_joint_robustness(SEQUENCE, 3, window=1), **effort)
 
 
+def certificate_of_mending(**effort: Any) -> None:
+    mending.certify_mending(rb.mend(GRAPH, 3), **effort)
+
+
 #: A call of every public front that comes to a search.
 FRONTS: dict[str, Callable[..., Any]] = {
     "check_rs_robustness": lambda **effort: rb.check_rs_robustness(GRAPH, 3, 2, **effort),
@@ -55,6 +59,8 @@ FRONTS: dict[str, Callable[..., Any]] = {
     "find_attack": lambda **effort: find_attack(GRAPH, 1, "delayed", **effort),
     "mend": lambda **effort: rb.mend(GRAPH, 3, **effort),
     "thin": lambda **effort: rb.thin(GRAPH, 3, keep=list(GRAPH.edges), **effort),
+    "best_within": lambda **effort: mending.best_within(GRAPH, 0, **effort),
+    "certify_mending": certificate_of_mending,
     "find_graph": lambda **effort: rb.find_graph(19, satisfies=["2-robust"], method="cp-sat", **effort),
 }
 
@@ -66,6 +72,7 @@ PARTIAL = {
     "survey": "its threads take networks, and every network is searched by one",
     "report": "the same",
     "margin": "one 0-1 programme: the solver takes time, threads and seed, and tells no progress",
+    "confirm_least": "one 0-1 programme for HiGHS, which takes time alone",
     "guaranteed": "a small seed graph",
     "replay": "the same",
     "certify_derivation": "the same",
@@ -115,7 +122,11 @@ def test_the_search_gets_all_of_it(name: str, monkeypatch: pytest.MonkeyPatch) -
         monkeypatch.setattr(f"robustness.{room}.settle_trap", lambda *_: None)
     monkeypatch.setattr(subset_search, "decide", listening(subset_search.decide))
     monkeypatch.setattr(searching, "decide", listening(searching.decide))
-    prepared = {"certify_tolerance", "joint_certificate"}  # whose answer to certify was found without limits
+    prepared = {
+        "certify_tolerance",
+        "certify_mending",
+        "joint_certificate",
+    }  # whose answer to certify was found without limits
     started = time.monotonic()
     FRONTS[name](time_limit=SECONDS, jobs=JOBS, seed=SEED, progress=note)
     asked = [limits for limits in heard if limits.seed == SEED] if name in prepared else heard

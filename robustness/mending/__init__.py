@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from robustness.mending.budget import BudgetResult, best_within
 from robustness.mending.certification import certify_mending
 from robustness.mending.front import mend, thin
 from robustness.mending.goal import Goal
@@ -10,12 +11,14 @@ from robustness.mending.rebuilding import Confirmation, LeastVerdict, confirm_le
 from robustness.mending.results import MendResult, MendVerdict
 
 __all__ = [
+    "BudgetResult",
     "Confirmation",
     "Goal",
     "LeastVerdict",
     "Margin",
     "MendResult",
     "MendVerdict",
+    "best_within",
     "certify_mending",
     "confirm_least",
     "margin",

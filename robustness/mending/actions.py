@@ -46,6 +46,8 @@ class Actions:
         cannot be told apart in the network cannot be told apart in the question.
     one_way : bool
         Whether an action is one arc, not one each way.
+    budget : int or None
+        What a choice may cost at most, in units of the scale.
     """
 
     items: tuple[Action, ...]
@@ -54,6 +56,7 @@ class Actions:
     most: tuple[int, ...] | None
     uniform: bool
     one_way: bool = False
+    budget: int | None = None
 
     def price(self, units: int) -> int | float:
         """Return a cost as people write it."""
@@ -70,6 +73,7 @@ def actions_for(
     require: Iterable[Link],
     max_in_degree: int | None,
     one_way: bool,
+    budget: Any = None,
 ) -> Actions:
     """Return what may be done; see :func:`robustness.mend` for the parameters.
 
@@ -104,7 +108,19 @@ def actions_for(
         most = tuple(max(0, max_in_degree - degree) for degree in graph.in_degrees.tolist())
     uniform = candidates is None and len(set(prices)) <= 1 and not forbidden and not required and most is None
     wanted = frozenset(k for k, item in enumerate(items) if item.ends in required)
-    return Actions(items, scale, wanted, most, uniform, one_way)
+    return Actions(items, scale, wanted, most, uniform, one_way, _units(budget, scale))
+
+
+def _units(budget: Any, scale: int) -> int | None:
+    if budget is None:
+        return None
+    try:
+        units = Fraction(str(budget)) * scale
+    except (ValueError, ZeroDivisionError):
+        units = Fraction(-1)
+    if isinstance(budget, bool) or units < 0:
+        raise InvalidParameter(f"a budget is a finite number of at least 0, not {budget!r}")
+    return math.floor(units)
 
 
 def _every(n: int, one_way: bool) -> Iterable[tuple[int, int]]:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from typing import Any
 
 from certificates.mending import FORMAT, verify_mending
 from robustness.decision.certification import certify
 from robustness.digraph import Digraph
 from robustness.errors import InternalError, InvalidParameter
-from robustness.limits import Limits
+from robustness.limits import Limits, Progress
 from robustness.mending.goal import Part
 from robustness.mending.hitting_set import with_actions
 from robustness.mending.results import MendResult, Problem
@@ -20,7 +21,12 @@ __all__ = ["certify_mending"]
 
 
 def certify_mending(
-    result: MendResult, *, time_limit: float | None = None, jobs: int = 1, seed: int = 0
+    result: MendResult,
+    *,
+    time_limit: float | None = None,
+    jobs: int = 1,
+    seed: int = 0,
+    progress: Callable[[Progress], None] | None = None,
 ) -> bytes | None:
     """Return a certificate of a result: that the links reach the goal, and the violations behind the lower bound.
 
@@ -31,7 +37,7 @@ def certify_mending(
     ----------
     result : MendResult
         Of :func:`robustness.mend` or :func:`robustness.thin`.
-    time_limit, jobs, seed
+    time_limit, jobs, seed, progress
         As for :func:`robustness.certify`.
 
     Returns
@@ -55,7 +61,7 @@ def certify_mending(
     problem = result.problem
     if problem is None:
         raise InvalidParameter("the result does not know its question: certify what mend or thin returned")
-    limits = Limits.of(time_limit, jobs, seed)
+    limits = Limits.of(time_limit, jobs, seed, progress)
     proofs: list[bytes] = []
     if problem.chosen is not None:
         mended = with_actions(problem.graph, problem.actions, problem.chosen)

@@ -32,6 +32,8 @@ def mend(
     require: Iterable[Link] = (),
     max_in_degree: int | None = None,
     one_way: bool | None = None,
+    budget: float | None = None,
+    any_choice: bool = False,
     time_limit: float | None = None,
     jobs: int = 1,
     seed: int = 0,
@@ -58,6 +60,11 @@ def mend(
         How many nodes a node that gains links can hear at most.
     one_way : bool, optional
         Whether an action is one arc; unless given, for directed graphs.
+    budget : number, optional
+        What the links may cost together at most; IMPOSSIBLE when nothing within it reaches the goal. For the most that
+        a budget buys, see :func:`robustness.mending.best_within`.
+    any_choice : bool
+        End with the first links, within the budget, that reach the goal; they are FEASIBLE unless known to be cheapest.
     time_limit : float, optional
         Wall-clock seconds; past it the best links so far are FEASIBLE, with the lower bound that is proven.
     jobs, seed, progress
@@ -89,10 +96,17 @@ def mend(
     goals = goals_of(goal)
     arcs_only = graph.directed if one_way is None else bool(one_way)
     actions = actions_for(
-        graph, candidates, cost, forbid=forbid, require=require, max_in_degree=max_in_degree, one_way=arcs_only
+        graph,
+        candidates,
+        cost,
+        forbid=forbid,
+        require=require,
+        max_in_degree=max_in_degree,
+        one_way=arcs_only,
+        budget=budget,
     )
     limits = Limits.of(time_limit, jobs, seed, progress)
-    return _answer(graph, goals, actions, limits, arcs_only, on_improvement)
+    return _answer(graph, goals, actions, limits, arcs_only, on_improvement, any_choice=any_choice)
 
 
 @taking_numpy_integers
@@ -184,6 +198,8 @@ def _answer(
     limits: Limits,
     one_way: bool,
     on_improvement: Callable[[MendResult], None] | None,
+    *,
+    any_choice: bool = False,
 ) -> MendResult:
     started = time.monotonic()
     parts = parts_of(goals, graph.n)
@@ -192,7 +208,7 @@ def _answer(
         if on_improvement is not None:
             on_improvement(_result(search, goals, one_way, time.monotonic() - started))
 
-    search = Search(graph, actions, parts, limits, told)
+    search = Search(graph, actions, parts, limits, told, any_choice)
     search.run()
     return _result(search, goals, one_way, time.monotonic() - started)
 
@@ -230,7 +246,8 @@ def _problem(search: Search) -> Problem:
         pairs = (search.witness,) if search.witness[1].S1 else ()
     else:
         pairs = tuple((first.part, sets_of(first, second)) for first, second in search.rows)
-    least = None if search.is_impossible else search.bound
+    beyond_budget = search.is_impossible and search.witness is None and search.actions.budget is not None
+    least = None if search.is_impossible and not beyond_budget else search.bound
     return Problem(search.graph, search.actions, tuple(search.parts), search.best, least, pairs)
 
 

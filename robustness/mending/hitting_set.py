@@ -10,6 +10,7 @@ repaired choice an upper one; both improve until they meet.
 from __future__ import annotations
 
 import random
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
@@ -65,6 +66,8 @@ class Search:
 
     Attributes
     ----------
+    any_choice : bool
+        End with the first choice that reaches the goal, within the budget.
     best : frozenset of int or None
         A choice that was checked to reach the goal.
     bound : int
@@ -80,6 +83,7 @@ class Search:
     parts: Sequence[Part]
     limits: Limits
     on_improvement: Callable[[Search], None] | None = None
+    any_choice: bool = False
     best: frozenset[int] | None = None
     bound: int = 0
     witness: tuple[Part, Sets] | None = None
@@ -90,6 +94,7 @@ class Search:
     _seen: set[Pair] = field(default_factory=set)
     _pool: dict[tuple[Part, int], dict[int, Side]] = field(default_factory=dict)
     _master: Master | None = None
+    _into: dict[int, list[tuple[int, int]]] = field(default_factory=lambda: defaultdict(list))
 
     def cost(self, chosen: Iterable[int]) -> int:
         """Return the cost of a choice, in units of the scale."""
@@ -100,9 +105,17 @@ class Search:
         """Whether the best choice is proven to be cheapest."""
         return self.best is not None and self.cost(self.best) <= self.bound
 
+    @property
+    def is_done(self) -> bool:
+        """Whether there is nothing more to find out."""
+        return self.is_optimal or self.is_impossible or (self.any_choice and self.best is not None)
+
     def run(self) -> None:
         """Search until the bounds meet, the goal is proven to be out of reach, or a limit comes."""
         self._base = masks_of(self.graph)
+        for a, item in enumerate(self.actions.items):
+            for tail, head in item.arcs:
+                self._into[head].append((tail, a))
         everything = frozenset(range(len(self.actions.items)))
         try:
             self.witness = first_violation(with_actions(self.graph, self.actions, everything), self.parts, self.limits)
@@ -120,7 +133,7 @@ class Search:
             self._tell()
             self._improve(self._repair(self.actions.required, 0))
             turn = 1
-            while not self.is_optimal and not self.is_impossible:
+            while not self.is_done:
                 self._round(self._master, turn)
                 turn += 1
         except Undecided:
@@ -130,7 +143,7 @@ class Search:
         """Propose, and repair; raise :class:`Undecided` when a limit came."""
         proposal = master.solve(self.limits.share(0.7), self.best)
         if proposal.bound is None:
-            self.is_impossible = True
+            self._rule_out()
             return
         if proposal.bound > self.bound:
             self.bound = proposal.bound
@@ -142,8 +155,18 @@ class Search:
             if len(self.rows) == known and proposal.is_optimal:  # the proposal itself reaches the goal
                 self.bound = max(self.bound, self.cost(proposal.chosen))
             self._improve(repaired)
-        if not self.is_optimal and self.limits.expired():
+        if not self.is_done and self.limits.expired():
             raise Undecided("the limit came before the bounds met")
+
+    def _rule_out(self) -> None:
+        """No choice meets the demands; with a budget, none within it: then it is a bound on the cost."""
+        self.is_impossible = True
+        if self.actions.budget is not None:
+            self.bound = max(self.bound, self.actions.budget + 1)
+
+    def _in_time(self) -> None:
+        if self.limits.expired():
+            raise Undecided("the limit came while demands were gathered")
 
     def _tell(self) -> None:
         if self.limits.progress is not None:
@@ -154,7 +177,10 @@ class Search:
             self.on_improvement(self)
 
     def _improve(self, chosen: frozenset[int] | None) -> None:
-        if chosen is not None and (self.best is None or self.cost(chosen) < self.cost(self.best)):
+        budget = self.actions.budget
+        if chosen is None or (budget is not None and self.cost(chosen) > budget):
+            return
+        if self.best is None or self.cost(chosen) < self.cost(self.best):
             self.best = chosen
             self._tell()
 
@@ -165,6 +191,7 @@ class Search:
             for M in sorted(known):
                 for side in grown_sides(heard, part, M):
                     self._take(side, heard)
+                    self._in_time()
 
     def _take(self, side: Side, heard: Sequence[int]) -> None:
         """Add a side to the pool; pair it with all others there that fit."""
@@ -174,6 +201,7 @@ class Search:
         for other in list(group.values()):
             if fit(side, other) and (len(self.rows) < _MOST_PAIRS or holds_apart(side, other, heard)):
                 self._learn(side, other)
+                self._in_time()
         group[side.S] = side
 
     def _learn(self, first: Side, second: Side) -> None:
@@ -242,11 +270,7 @@ class Search:
         return True
 
     def _suppliers(self, unit: Unit) -> list[int]:
-        return [
-            a
-            for a, item in enumerate(self.actions.items)
-            if any(head == unit.node and unit.outside >> tail & 1 for tail, head in item.arcs)
-        ]
+        return [a for tail, a in self._into[unit.node] if unit.outside >> tail & 1]
 
     def _gains(self, heard: Sequence[int]) -> dict[int, float]:
         """Return for every action how much it helps with all open demands, at most nine tenths of its cost."""

@@ -8,6 +8,7 @@ Over ``x_a`` (action a is chosen), ``y_u`` (the unit u is met) and for every sid
     f_S <= y_u  (u of S),   w_S <= sum of y_u over S + s f_S
     w_S + w_T >= s   (or a node outside M hears more than f of M)              every pair (S, T) of a violation
     sum of x_a over the actions that bring an arc into i <= most_i             every capped i
+    sum of c_a x_a <= budget                                                   if there is one
     x_a = 1                                                                    required a
 
 For s = 1 the worth is 0 or 1, and one more inequality helps the relaxation: some unit of a side of worth 1 is met in
@@ -75,7 +76,10 @@ class Master:
                 self._model.add(sum(self._x[a] for _, a in self._into[i]) <= most)
         if actions.uniform:
             self._break_symmetry(graph)
-        self._model.minimize(sum(item.cost * x for item, x in zip(actions.items, self._x, strict=True)))
+        cost = sum(item.cost * x for item, x in zip(actions.items, self._x, strict=True))
+        if actions.budget is not None:
+            self._model.add(cost <= actions.budget)
+        self._model.minimize(cost)
 
     def add(self, first: Side, second: Side) -> None:
         """Add one demand: two sides that fit."""

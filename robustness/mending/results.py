@@ -134,6 +134,8 @@ class MendResult(Shown):
 
     def summary(self) -> str:
         """Return the answer in one sentence."""
+        if self.verdict is MendVerdict.IMPOSSIBLE and self.problem is not None and self.problem.least is not None:
+            return f"impossible: nothing within the budget reaches the goal, {self.goal}"
         if self.verdict is MendVerdict.IMPOSSIBLE:
             return f"impossible: no choice of these links reaches the goal, {self.goal}"
         if self.verdict is MendVerdict.UNDECIDED:

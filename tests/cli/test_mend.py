@@ -126,6 +126,18 @@ def test_candidates_forbidden_required_and_range(platoon: Path, tmp_path: Path) 
     assert "99" in strange.stderr
 
 
+def test_budget(platoon: Path) -> None:
+    assert run("mend", platoon, "-r", 2, "-s", 2, "--budget", 3).exit_code == ExitCode.REFUTED
+    assert run("mend", platoon, "-r", 2, "-s", 2, "--budget", 4).exit_code == ExitCode.DONE
+    bought = run("mend", platoon, "--budget", 4)
+    assert bought.exit_code == ExitCode.DONE
+    assert bought.stdout.startswith("the budget buys (2,4)-robust, for 4; it does not buy (2,5)-robust")
+    found = json.loads(run("mend", platoon, "--budget", 4, "--json").stdout)
+    assert (found["goal"], found["missed"], found["is_exact"]) == ("(2,4)-robust", "(2,5)-robust", True)
+    assert run("mend", platoon, "--budget", "-1").exit_code != ExitCode.DONE
+    assert run("mend", platoon).exit_code == ExitCode.USAGE
+
+
 def test_thin(tmp_path: Path) -> None:
     write_topology(nx.complete_graph(5), tmp_path / "five.json")
     done = run("thin", tmp_path / "five.json", "-r", 2, "-s", 2, "-o", tmp_path / "thin.json")

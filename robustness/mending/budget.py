@@ -1,0 +1,145 @@
+"""The most robust network that a budget buys: goals one above the other, each asked within the budget."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from robustness.digraph import Digraph, GraphLike, as_digraph
+from robustness.errors import InvalidParameter
+from robustness.limits import Limits, Progress
+from robustness.mending.front import mend
+from robustness.mending.goal import Goal
+from robustness.mending.results import MendResult, MendVerdict
+
+__all__ = ["BudgetResult", "best_within"]
+
+_REACHED = (MendVerdict.OPTIMAL, MendVerdict.FEASIBLE)
+
+
+@dataclass(frozen=True, slots=True)
+class BudgetResult:
+    """What a budget buys.
+
+    Attributes
+    ----------
+    best : MendResult or None
+        The links for the highest goal that is known to be affordable; None when none is.
+    missed : MendResult or None
+        The next goal, which is not, or not known to be; None when there is none.
+    is_exact : bool
+        Whether it is proven that the budget does not buy ``missed``.
+    """
+
+    best: MendResult | None
+    missed: MendResult | None
+    is_exact: bool
+
+    def __bool__(self) -> bool:
+        raise TypeError("a BudgetResult has no truth value: compare .is_exact")
+
+    def summary(self) -> str:
+        """Return the answer in one sentence."""
+        bought = "nothing" if self.best is None else f"{self.best.goal}, for {self.best.cost}"
+        if self.missed is None:
+            return f"the budget buys {bought}; there is nothing more to reach"
+        if self.is_exact:
+            return f"the budget buys {bought}; it does not buy {self.missed.goal}"
+        return f"the budget buys {bought}; whether it buys {self.missed.goal} was not decided within the limit"
+
+
+def best_within(
+    G: GraphLike,
+    budget: float,
+    *,
+    model: str | None = None,
+    time_limit: float | None = None,
+    jobs: int = 1,
+    seed: int = 0,
+    progress: Callable[[Progress], None] | None = None,
+    **constraints: Any,
+) -> BudgetResult:
+    """Return links within a budget that make G as robust as links within it can, exactly.
+
+    Parameters
+    ----------
+    G : networkx graph or Digraph
+    budget : number
+        What the links may cost together.
+    model : str, optional
+        As robust as can be means: survives the most malicious nodes under this threat model. Unless given: the
+        greatest r, and for it the greatest s, of (r,s)-robustness.
+    time_limit, jobs, seed, progress
+        As for :func:`robustness.mend`, for all goals together.
+    **constraints
+        ``candidates``, ``cost``, ``forbid``, ``require``, ``max_in_degree`` and ``one_way`` of :func:`robustness.mend`.
+
+    Returns
+    -------
+    BudgetResult
+        ``best`` ends with the first links within the budget that reach its goal: ask :func:`robustness.mend` for the
+        cheapest.
+
+    Raises
+    ------
+    InvalidParameter
+        As :func:`robustness.mend`.
+
+    Notes
+    -----
+    (r,s)-robustness implies (r-1,s)- and (r,s-1)-robustness, and who survives f survives f - 1. So the first goal of
+    the ladder that is out of reach ends it, and a rung costs one call of :func:`robustness.mend`.
+
+    >>> import networkx as nx
+    >>> print(best_within(nx.path_graph(5), 3).summary())
+    the budget buys (2,2)-robust, for 3; it does not buy (2,3)-robust
+    """
+    graph = as_digraph(G)
+    if budget is None:
+        raise InvalidParameter("a budget is a finite number of at least 0, not None")
+    limits = Limits.of(time_limit, jobs, seed, progress)
+    best: MendResult | None = None
+    missed: MendResult | None = None
+    is_exact = True
+    for climb in (_first_climb, _second_climb):
+        goal = climb(best, model, graph.n)
+        while goal is not None:
+            found = _within(graph, goal, budget, constraints, limits)
+            if found.verdict not in _REACHED:
+                missed = found
+                is_exact = is_exact and found.verdict is MendVerdict.IMPOSSIBLE
+                break
+            best, goal = found, climb(found, model, graph.n)
+    return BudgetResult(best, missed, is_exact)
+
+
+def _first_climb(best: MendResult | None, model: str | None, n: int) -> Goal | None:
+    """Return the next goal: r, or how many malicious nodes are survived, one higher."""
+    if model is not None:
+        f = -1 if best is None else best.goals[0].survive
+        return Goal(survive=f + 1, model=model) if f is not None and f + 1 < n else None
+    r = 0 if best is None else best.goals[0].r
+    return Goal(r + 1) if r is not None and r < max(1, (n + 1) // 2) else None
+
+
+def _second_climb(best: MendResult | None, model: str | None, n: int) -> Goal | None:
+    """Return the next goal: for the greatest r, s one higher."""
+    if model is not None or best is None or best.goals[0].s >= n:
+        return None
+    return Goal(best.goals[0].r, best.goals[0].s + 1)
+
+
+def _within(graph: Digraph, goal: Goal, budget: float, constraints: dict[str, Any], limits: Limits) -> MendResult:
+    effort = limits.keywords()
+    return mend(
+        graph,
+        goal,
+        budget=budget,
+        any_choice=True,
+        time_limit=effort["time_limit"],
+        jobs=limits.jobs,
+        seed=limits.seed,
+        progress=limits.progress,
+        **constraints,
+    )

@@ -1,0 +1,80 @@
+"""A budget buys what brute force says it buys, and no more."""
+
+from __future__ import annotations
+
+import random
+
+import networkx as nx
+import pytest
+
+import robustness as rb
+from certificates import verify_mending
+from robustness.errors import InvalidParameter
+from robustness.mending import LeastVerdict, MendVerdict, best_within, certify_mending, confirm_least
+from tests.mending.brute_force import candidates, is_robust, least_cost
+
+
+def test_a_goal_is_reached_within_a_budget_exactly_when_its_least_cost_is() -> None:
+    rng = random.Random(2)
+    for _ in range(4):
+        network = nx.gnp_random_graph(5, 0.4, seed=rng.randrange(1000))
+        for goal in ((2, 1), (2, 2)):
+            least = least_cost(network, is_robust(*goal), candidates(network))
+            assert least is not None
+            for budget in range(max(0, least - 1), least + 2):
+                found = rb.mend(network, goal, budget=budget)
+                assert (found.cost == least) is (budget >= least)
+                assert found.verdict is (MendVerdict.OPTIMAL if budget >= least else MendVerdict.IMPOSSIBLE)
+
+
+def test_the_most_a_budget_buys() -> None:
+    rng = random.Random(3)
+    for _ in range(3):
+        network = nx.gnp_random_graph(5, 0.4, seed=rng.randrange(1000))
+        for budget in (0, 2, 4):
+            affordable = [
+                (r, s)
+                for r in (1, 2, 3)
+                for s in range(1, 6)
+                if (least := least_cost(network, is_robust(r, s), candidates(network))) is not None and least <= budget
+            ]
+            found = best_within(network, budget)
+            assert found.is_exact
+            goal = None if found.best is None else found.best.goals[0]
+            assert (None if goal is None else (goal.r, goal.s)) == max(affordable, default=None)
+            assert goal is None or rb.is_rs_robust(found.best.graph, goal.r, goal.s)  # type: ignore[union-attr]
+            assert "the budget buys" in found.summary()
+
+
+def test_models_and_costs() -> None:
+    found = best_within(nx.path_graph(5), 100, model="delayed")
+    assert found.best is not None
+    assert found.best.goals[0].survive == 1
+    assert found.is_exact
+    priced = rb.mend(nx.path_graph(4), 2, cost=lambda u, v: 0.5 * abs(u - v), budget=2.25)
+    assert priced.cost is not None
+    assert priced.cost <= 2.25
+
+
+def test_a_bound_beyond_a_budget_is_certified() -> None:
+    path = rb.Digraph.from_networkx(nx.path_graph(6))
+    data = certify_mending(rb.mend(path, (2, 2), budget=3))
+    assert data is not None
+    assert (
+        verify_mending(path.canonical_bytes(), data).cost,
+        confirm_least(path.canonical_bytes(), data).claim.least,
+    ) == (
+        None,
+        4,
+    )
+    assert confirm_least(path.canonical_bytes(), data).verdict is LeastVerdict.CONFIRMED
+
+
+def test_misuse() -> None:
+    for wrong in (-1, "much", float("nan"), True):
+        with pytest.raises(InvalidParameter, match="a budget is"):
+            rb.mend(nx.path_graph(4), 2, budget=wrong)  # type: ignore[arg-type]
+    with pytest.raises(InvalidParameter, match="a budget is"):
+        best_within(nx.path_graph(4), None)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="no truth value"):
+        bool(best_within(nx.path_graph(4), 1))
