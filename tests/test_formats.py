@@ -73,6 +73,10 @@ UNDIRECTED = {
     "pandas.csv": ",source,target\n" + "".join(f"{k},{u},{v}\n" for k, (u, v) in enumerate(LINKS)),
     "gephi.csv": "Source,Target,Type,Id,Label,Weight\n" + lines("{},{},Undirected,0,,1.0"),
     "matrix.tsv": "\ta\tb\tc\td\na\t0\t1\t1\t1\nb\t1\t0\t1\t1\nc\t1\t1\t0\t0\nd\t1\t1\t0\t0\n",
+    "matrix-of-R.txt": '"a" "b" "c" "d"\n"a" 0 1 1 1\n"b" 1 0 1 1\n"c" 1 1 0 0\n"d" 1 1 0 0\n',
+    "links-of-R.txt": '"from" "to"\n' + "".join(f'"{k}" "{u}" "{v}"\n' for k, (u, v) in enumerate(LINKS, 1)),
+    "matrix-blanks.csv": ",a,b,c,d\na,,1,1,1\nb,1,,1,1\nc,1,1,,\nd,1,1,,\n",
+    "of-a-spreadsheet.csv": "sep=;\n" + lines("{};{}"),
     "matrix-nan.csv": "a,b,c,d\nnan,1,1,1\n1,nan,1,1\n1,1,nan,nan\n1,1,nan,nan\n",
     "market-in-text.txt": "%%MatrixMarket matrix coordinate pattern symmetric\n4 4 5\n2 1\n3 1\n4 1\n3 2\n4 2\n",
     # JSON.
@@ -374,6 +378,10 @@ class TestLabels:
             assert rb.mend(nx.path_graph(3), rb.Goal(r=kind(2))).links
         with pytest.raises(rb.InvalidParameter, match="r is an integer"):
             rb.is_r_robust(DIAMOND, np.float64(2))
+
+
+def test_text_in_utf_16_with_its_mark() -> None:
+    assert is_same(read(("Source;Target\n" + lines("{};{}")).encode("utf-16"), ".csv"), DIAMOND)
 
 
 def test_packed_files_and_many_graphs(tmp_path: Path) -> None:

@@ -168,7 +168,12 @@ def links_of(
     """
     told = list(notes or [])
     head, body, lines = _head(rows, options)
-    if head is not None and not head[0] and [row[0] for row in body] == [str(k) for k in range(len(body))]:
+    numbered = [row[0] for row in body]
+    if (
+        head is not None
+        and not head[0]
+        and any(numbered == [str(k) for k in range(first, first + len(body))] for first in (0, 1))
+    ):
         head, body = head[1:], [row[1:] for row in body]
         told.append("column 1 numbers the rows")
     if len(head or rows.cells[0]) < 2:

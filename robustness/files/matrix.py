@@ -53,7 +53,7 @@ def matrix_of_rows(rows: Rows, options: ReadingOptions, *, in_text: bool, is_ask
     UnreadableTopology
         When the rows may be a matrix and may be links, or a cell may be a link and may be none.
     """
-    cells, lines = rows.cells, rows.lines
+    cells, lines = _with_blanks_filled(rows.cells), rows.lines
     height, width = len(cells), len(cells[0])
     labels: list[str] | None = None
     top, left = 0, 0
@@ -83,6 +83,14 @@ def matrix_of_rows(rows: Rows, options: ReadingOptions, *, in_text: bool, is_ask
         raise UnreadableTopology(f"line {lines[0]}: a label is given twice: give every node its own")
     pattern, notes = _pattern(block, lines[top:], left)
     return graph_of_pattern(pattern, options, labels, notes)
+
+
+def _with_blanks_filled(cells: list[list[str]]) -> list[list[str]]:
+    """Return the rows of a table that is framed by the same labels with 0 in its blank cells; others as they are."""
+    labels = cells[0][1:]
+    if len(labels) < 2 or cells[0][0] or labels != [row[0] for row in cells[1:]]:
+        return cells
+    return [cells[0], *([row[0], *(cell or "0" for cell in row[1:])] for row in cells[1:])]
 
 
 def _is_value(cell: str) -> bool:

@@ -108,6 +108,8 @@ def content_of(data: bytes, skip_lines: int | None = None) -> Content:
             continue
         if "#" in text and '"' not in text:
             text = re.split(r"\s#", text)[0].rstrip(" ")
+        if not lines and re.fullmatch(r"sep=.", text):
+            continue  # a spreadsheet's word about its separator, which shows itself
         if text.strip():
             lines.append((number, text))
     if len(said) == 2:
@@ -149,6 +151,8 @@ def rows_of(content: Content) -> Rows:
     separator, cells = split_lines(texts, numbers)
     while cells and all(len(row) > 1 and not row[-1] for row in cells):
         cells = [row[:-1] for row in cells]
+    if _is_headed_by_names(cells):
+        cells[0].insert(0, "")
     for number, row in zip(numbers, cells, strict=True):
         if len(row) != len(cells[0]):
             raise UnreadableTopology(
@@ -158,6 +162,14 @@ def rows_of(content: Content) -> Rows:
                 "for lines at the beginning that are something else"
             )
     return Rows(cells, numbers, content.is_directed, separator, content.comment, content.skipped < 0)
+
+
+def _is_headed_by_names(cells: list[list[str]]) -> bool:
+    """Return whether the first line lacks the corner above the names of the rows, as R writes tables."""
+    if len(cells) < 3 or len({len(row) for row in cells[1:]}) > 1 or len(cells[0]) != len(cells[1]) - 1:
+        return False
+    first = [row[0] for row in cells[1:]]
+    return cells[0] == first or first == [str(k) for k in range(1, len(cells))]
 
 
 def split_lines(texts: Sequence[str], numbers: Sequence[int] = ()) -> tuple[str, list[list[str]]]:

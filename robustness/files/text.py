@@ -23,7 +23,12 @@ def one_line(text: str) -> str:
 
 
 def decode_utf8(data: bytes) -> str:
-    """Return ``data`` as text; a byte order mark is allowed."""
+    """Return ``data`` as text: UTF-8, or UTF-16 where a byte order mark says so, as spreadsheets write it."""
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        try:
+            return data.decode("utf-16")
+        except UnicodeDecodeError:
+            raise UnreadableTopology("the byte order mark says UTF-16, and the text is not") from None
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as problem:
