@@ -39,7 +39,7 @@ SCHEMA = "robustness/certify/1"
     help="veripb: also write OUTPUT.opb and OUTPUT.pbp for a third party's checker.",
 )
 @click.option("--veripb-version", type=click.Choice(["3.0", "1.1"]), default="3.0", show_default=True)
-@query_options()
+@query_options(cluster=True)
 def command(
     ctx: click.Context,
     console: Console,
@@ -64,7 +64,7 @@ def command(
     from robustness.results import RobustnessResult, Verdict
 
     proofs = [output.with_name(output.name + suffix) for suffix in (".opb", ".pbp")] if proof_format == "veripb" else []
-    require_different_files([source], [output, canonical, *proofs])
+    require_different_files([source], [output, canonical, *proofs, query.state])
     graph = load_graph(source)
     is_interrupted = False
     with ProgressLine(console) as line:
@@ -104,6 +104,7 @@ def command(
                 "bounds": None if result.bounds is None else result.bounds.as_dict(),
                 "bytes": len(result.certificate or b""),
                 "files": written,
+                **({"estimate": result.stats["estimate"]} if "estimate" in result.stats else {}),
                 "seconds": round(result.seconds, 6),
             },
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -41,6 +41,8 @@ class Report:
     profile: Mapping[int, int] | None = None
     algorithm: str = ""
     reason: str = ""
+    estimate: Mapping[str, Any] | None = None
+    trusted: str = ""
     seconds: float = 0.0
     is_decision: bool = False
     is_interrupted: bool = False
@@ -64,6 +66,8 @@ class Report:
             "bounds": self._bounds(),
             "witness": None if pair is None else {"S1": set_document(pair.S1), "S2": set_document(pair.S2)},
             "algorithm": self.algorithm,
+            **({} if self.estimate is None else {"estimate": dict(self.estimate)}),
+            **({"trusted": self.trusted} if self.trusted else {}),
             "seconds": round(self.seconds, 6),
         }
 
@@ -78,7 +82,7 @@ class Report:
     metavar="SECONDS",
     help="Without -r: stop looking for the greatest s after this time, once r* is known.",
 )
-@query_options(algorithm=True)
+@query_options(algorithm=True, cluster=True)
 def command(
     ctx: click.Context,
     console: Console,
@@ -163,7 +167,8 @@ def _add_profile(report: Report, query: Query, line: ProgressLine) -> None:
     from robustness.results import Bound, Bounds
 
     def work() -> Mapping[int, int]:
-        return robustness_profile(report.graph, algorithm=query.algorithm, **query.effort(line))
+        here = replace(query, executor=None, state=None)
+        return robustness_profile(report.graph, algorithm=query.algorithm, **here.effort(line))
 
     try:
         profile = query.wait_for(work, line)
@@ -195,6 +200,8 @@ def _report_on(graph: Digraph, result: RobustnessResult) -> Report:
         result.profile,
         result.algorithm,
         reason=str(result.stats.get("reason", "")),
+        estimate=result.stats.get("estimate"),
+        trusted=str(result.stats.get("trusted", "")),
     )
 
 
@@ -239,6 +246,10 @@ def _lines(report: Report, source: str, *, whole: bool) -> Iterator[str]:
     if report.profile:
         yield from _profile_table(report.profile)
     yield f"algorithm  {report.algorithm}"
+    if report.trusted:
+        yield f"trusted    {report.trusted}"
+    if report.estimate is not None:
+        yield f"left       {report.estimate['in_words']}"
     yield f"time       {report.seconds:.3f} s"
 
 

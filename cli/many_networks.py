@@ -152,6 +152,7 @@ def run_survey(
     *,
     state: Path | None = None,
     on_findings: Callable[[Findings], None] | None = None,
+    executor: Any = None,
 ) -> tuple[Survey, bool]:
     """Return the survey of the networks and whether it was interrupted; then it holds the rows that were finished."""
     from robustness.surveying import Survey, survey
@@ -172,6 +173,7 @@ def run_survey(
             on_row=line.note,
             on_findings=on_findings,
             reading=networks.reading,
+            executor=executor,
         )
 
     try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import wraps
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -16,10 +17,32 @@ from .output import ProgressLine, pass_console
 if TYPE_CHECKING:
     from robustness.limits import Progress
 
-__all__ = ["Query", "query_options", "speaking"]
+__all__ = ["Query", "cluster_option", "joined_cluster", "query_options", "speaking"]
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 _Result = TypeVar("_Result")
+
+
+cluster_option = click.option(
+    "--cluster",
+    metavar="ADDRESS",
+    help="Spread the exact search over a Dask cluster: tcp://HOST:PORT, or local:N for N processes here.",
+)
+
+cubes_option = click.option(
+    "--state",
+    "cubes",
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="FILE",
+    help="A journal of what is refuted: the same command goes on where it was stopped or killed.",
+)
+
+
+def joined_cluster(address: str) -> Any:
+    """Return a client of the cluster, which is left when the command ends."""
+    from robustness.cubes import opened_cluster
+
+    return click.get_current_context().with_resource(opened_cluster(address))
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +59,10 @@ class Query:
         Seconds; what is not decided by then is undecided.
     jobs, seed : int
         Threads; the seed of every random choice.
+    executor : distributed.Client or None
+        Who solves the cubes of an exact search, for the commands with --cluster.
+    state : Path or None
+        The journal of closed cubes, for the same.
     """
 
     as_json: bool = False
@@ -43,6 +70,8 @@ class Query:
     timeout: float | None = None
     jobs: int = 1
     seed: int = 0
+    executor: Any = None
+    state: Path | None = None
 
     def within(self, seconds: float | None) -> Query:
         """Return the same query with another time limit: what is left for the next part of a command."""
@@ -50,7 +79,9 @@ class Query:
 
     def effort(self, progress: Callable[[Progress], None] | None = None) -> dict[str, Any]:
         """Return what every front of the library takes about how hard to work: the whole of it, by its keywords."""
-        return {"time_limit": self.timeout, "jobs": self.jobs, "seed": self.seed, "progress": progress}
+        effort = {"time_limit": self.timeout, "jobs": self.jobs, "seed": self.seed, "progress": progress}
+        cubes = {"executor": self.executor, "state": self.state}
+        return effort | {name: value for name, value in cubes.items() if value is not None}
 
     def wait_for(self, work: Callable[[], _Result], line: ProgressLine | None = None) -> _Result:
         """Return what ``work()`` returns; Ctrl-C and the time limit end the wait, as ``interruptibly`` says."""
@@ -62,13 +93,15 @@ def speaking(command: _Command) -> _Command:
     return talk_options(pass_console(click.pass_context(command)))  # type: ignore[return-value]
 
 
-def query_options(*, json: bool = True, algorithm: bool = False) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+def query_options(
+    *, json: bool = True, algorithm: bool = False, cluster: bool = False
+) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Add the common options to a command, which gets the context, the console and a :class:`Query`.
 
     Parameters
     ----------
-    json, algorithm : bool
-        Whether the command has --json and --algorithm.
+    json, algorithm, cluster : bool
+        Whether the command has --json, --algorithm, and --cluster with --state.
     """
 
     def add(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -80,13 +113,17 @@ def query_options(*, json: bool = True, algorithm: bool = False) -> Callable[[Ca
             seed: int,
             as_json: bool = False,
             algorithm: str = "auto",
+            cluster: str | None = None,
+            cubes: Path | None = None,
             **own: Any,
         ) -> Any:
-            return command(*arguments, Query(as_json, algorithm, timeout, jobs, seed), **own)
+            executor = None if cluster is None else joined_cluster(cluster)
+            return command(*arguments, Query(as_json, algorithm, timeout, jobs, seed, executor, cubes), **own)
 
         wrapped: Callable[..., Any] = speaking(with_query)
         for option in (seed_option, jobs_option, timeout_option):
             wrapped = option(wrapped)
+        wrapped = cluster_option(cubes_option(wrapped)) if cluster else wrapped
         wrapped = algorithm_option(wrapped) if algorithm else wrapped
         return json_option(wrapped) if json else wrapped
 

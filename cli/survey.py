@@ -9,7 +9,7 @@ import click
 from .many_networks import ManyNetworks, exit_code, many_networks_options, run_survey
 from .options import json_option
 from .output import Console
-from .query import speaking
+from .query import cluster_option, joined_cluster, speaking
 
 __all__ = ["SCHEMA", "command"]
 
@@ -30,6 +30,7 @@ _NAMES = tuple(_KINDS.values())
     metavar="FILE",
     help="A journal of finished rows: the same command goes on where it was stopped or killed.",
 )
+@cluster_option
 @json_option
 @speaking
 def command(
@@ -39,6 +40,7 @@ def command(
     kind: str | None,
     output: Path | None,
     state: Path | None,
+    cluster: str | None,
     as_json: bool,
 ) -> None:
     """What is known about each of many networks, and does every one pass?
@@ -51,7 +53,8 @@ def command(
     from robustness.surveying.tables import TABLES
 
     require_different_files(networks.paths, [output, state])
-    found, is_interrupted = run_survey(console, networks, state=state)
+    executor = None if cluster is None else joined_cluster(cluster)
+    found, is_interrupted = run_survey(console, networks, state=state, executor=executor)
     for note in found.notes:
         console.warn(note)
     kind = kind or ("table" if output is None else _KINDS.get(output.suffix.lower(), "table"))

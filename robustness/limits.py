@@ -11,6 +11,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 from robustness.errors import InvalidParameter
@@ -49,6 +50,10 @@ class Limits:
     steps : int or None
         A budget for one exact search, counted and not timed; past it the answer is UNDECIDED. Only searches that can
         count their work keep to it.
+    executor : concurrent.futures.Executor, distributed.Client or robustness.cubes.CubeExecutor, optional
+        Who solves the cubes of an exact search that has no budget of steps; else the threads of this process do.
+    state : path, optional
+        A journal of closed cubes, with which a search that is asked again goes on where it was.
     """
 
     deadline: float | None = None
@@ -56,6 +61,8 @@ class Limits:
     seed: int = 0
     progress: Callable[[Progress], None] | None = None
     steps: int | None = None
+    executor: Any = None
+    state: str | Path | None = None
 
     @classmethod
     def of(
@@ -102,7 +109,17 @@ class Limits:
         Once the deadline has passed a moment is left, in which a front settles what needs no search.
         """
         left = None if self.deadline is None else max(_MOMENT, self.deadline - time.monotonic())
-        return {"time_limit": left, "jobs": self.jobs, "seed": self.seed, "progress": self.progress}
+        effort = {"time_limit": left, "jobs": self.jobs, "seed": self.seed, "progress": self.progress}
+        return effort | self._cubes()
+
+    def _cubes(self) -> dict[str, Any]:
+        """Return where cubes are solved and written down, for the fronts that were asked to: others do not take it."""
+        found = {"executor": self.executor, "state": self.state}
+        return {name: value for name, value in found.items() if value is not None}
+
+    def spread_over(self, executor: Any = None, state: str | Path | None = None) -> Limits:
+        """Return these limits with another executor and journal of cubes."""
+        return replace(self, executor=executor, state=state)
 
     def seconds_left(self) -> float:
         """Return the seconds until the deadline (``inf`` without one, never negative)."""

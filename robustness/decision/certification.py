@@ -10,11 +10,13 @@ import json
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from certificates import MalformedCertificate, verify
 from certificates.verification import FORMAT
 from robustness.answers import Answer, Question, Verdict, answers_in_turn
+from robustness.cubes.executors import require_executor
 from robustness.decision.bounds import settle
 from robustness.decision.bounds.degree import robust_by_degree
 from robustness.decision.ladder import algorithm_rung, by_convention
@@ -43,12 +45,14 @@ def certify(
     seed: int = 0,
     progress: Callable[[Progress], None] | None = None,
     evidence: str = "shortest",
+    executor: Any = None,
+    state: str | Path | None = None,
 ) -> RobustnessResult:
     """Decide (r,s)-robustness of G and return the result with a verified certificate of it.
 
     Parameters
     ----------
-    G, time_limit, jobs, seed, progress
+    G, time_limit, jobs, seed, progress, executor, state
         As for :func:`robustness.check_rs_robustness`.
     r : int
         At least 1: that every graph is (0,s)-robust needs no proof.
@@ -75,9 +79,10 @@ def certify(
     robust
     """
     started = time.monotonic()
+    require_executor(executor)
     if evidence not in ("shortest", "refutation"):
         raise InvalidParameter(f"evidence is 'shortest' or 'refutation', not {evidence!r}")
-    limits = Limits.of(time_limit, jobs, seed, progress)
+    limits = Limits.of(time_limit, jobs, seed, progress).spread_over(executor, state)
     result = certify_within(Question.about(G, r, s), limits, shortest=evidence == "shortest")
     return replace(result, seconds=time.monotonic() - started)
 

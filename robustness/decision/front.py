@@ -9,10 +9,12 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from robustness.answers import Question
+from robustness.cubes.executors import require_executor
 from robustness.decision.algorithms import require_algorithm, require_options
 from robustness.decision.bounds import quick_bounds
 from robustness.decision.determination import determine, profile
@@ -69,6 +71,8 @@ def check_rs_robustness(
     jobs: int = 1,
     seed: int = 0,
     progress: Callable[[Progress], None] | None = None,
+    executor: Any = None,
+    state: str | Path | None = None,
     **options: Any,
 ) -> RobustnessResult:
     """Decide whether G is (r,s)-robust.
@@ -95,6 +99,12 @@ def check_rs_robustness(
         Of the heuristics; it changes the time taken and the pair found, never the verdict.
     progress : callable, optional
         Called now and then with a :class:`~robustness.limits.Progress`.
+    executor : concurrent.futures.Executor, distributed.Client or robustness.cubes.CubeExecutor, optional
+        Who solves the cubes of ``subset-search`` in place of threads of this process. It stays open. Workers that
+        are lost change nothing, or leave the question UNDECIDED: ``docs/cluster.md``.
+    state : path, optional
+        A journal to which every closed cube of ``subset-search`` is appended; asked again with it, here or on another
+        machine, the search goes on where it was.
     **options
         Switches of the algorithm, listed in ``algorithms.OPTIONS``; they never change a verdict.
 
@@ -119,10 +129,12 @@ def check_rs_robustness(
     >>> check_rs_robustness(nx.cycle_graph(6), 2).verdict
     <Verdict.NOT_ROBUST: 'not-robust'>
     """
+    require_executor(executor)
     require_algorithm(algorithm)
     require_options("check_rs_robustness", algorithm, options)
     question = Question.about(G, r, s)
-    result = check_within(*question, Limits.of(time_limit, jobs, seed, progress), algorithm, options)
+    limits = Limits.of(time_limit, jobs, seed, progress).spread_over(executor, state)
+    result = check_within(*question, limits, algorithm, options)
     if result.verdict is Verdict.UNDECIDED and result.bounds is not None:
         return replace(result, bounds=result.bounds.met_with(quick_bounds(question.graph)))
     return result
@@ -157,13 +169,15 @@ def determine_robustness(
     progress: Callable[[Progress], None] | None = None,
     s_time_limit: float | None = None,
     on_bounds: Callable[[Bounds], None] | None = None,
+    executor: Any = None,
+    state: str | Path | None = None,
 ) -> RobustnessResult:
     """Return r*, the greatest r for which G is r-robust, and then the greatest s for which G is (r*,s)-robust.
 
     Parameters
     ----------
-    G, algorithm, time_limit, jobs, seed, progress
-        As for :func:`check_rs_robustness`.
+    G, algorithm, time_limit, jobs, seed, progress, executor, state
+        As for :func:`check_rs_robustness`. Short searches on the way are done here.
     s_time_limit : float, optional
         Seconds that the search for s may go on once r* is known. Without it the search uses what ``time_limit`` leaves;
         and without that it goes on until s is exact on up to 28 nodes, when an algorithm is named, and otherwise for a
@@ -191,7 +205,8 @@ def determine_robustness(
     started = time.monotonic()
     graph = as_digraph(G)
     require_algorithm(algorithm)
-    limits = Limits.of(time_limit, jobs, seed, progress)
+    require_executor(executor)
+    limits = Limits.of(time_limit, jobs, seed, progress).spread_over(executor, state)
     limits.within(s_time_limit, "s_time_limit")
     found = determine(graph, algorithm, limits, s_time_limit, on_bounds)
     return replace(found, seconds=time.monotonic() - started, graph=graph)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from robustness.cubes.executors import require_executor
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter, MissingExtra, RobustnessError
 from robustness.files import ReadingOptions
@@ -112,6 +113,7 @@ def survey(
     on_row: Callable[[Row, int, int], None] | None = None,
     on_findings: Callable[[Findings], None] | None = None,
     reading: ReadingOptions | None = None,
+    executor: Any = None,
 ) -> Survey:
     """Return one row of facts for each of many networks: its size, r*, s, what f it survives, and what a gate says.
 
@@ -141,6 +143,8 @@ def survey(
         nor for those that a journal holds.
     reading : ReadingOptions, optional
         How files are to be read, as for :func:`robustness.read_topology`.
+    executor : concurrent.futures.Executor, distributed.Client or robustness.cubes.CubeExecutor, optional
+        Who solves the cubes of the exact searches for r* and s, as for :func:`robustness.check_rs_robustness`.
 
     Returns
     -------
@@ -161,6 +165,7 @@ def survey(
     """
     if type(jobs) is not int or jobs < 1:
         raise InvalidParameter(f"jobs is an integer of at least 1, not {jobs!r}")
+    require_executor(executor)
     names = tuple(THREAT_MODELS) if models is None else tuple(threat_model_named(name).name for name in models)
     question = Question(names, gate or Gate(), time_limit, seed)
     networks, notes = _named(graphs)
@@ -170,7 +175,7 @@ def survey(
     with Journal(None if state is None else Path(state)) as journal:
 
         def row_of(name: str, graph: Any, left: float | None) -> tuple[str | None, Row]:
-            return _row(name, graph, _within(question, left), question, journal, folder, on_findings, reading)
+            return _row(name, graph, _within(question, left), question, journal, folder, on_findings, reading, executor)
 
         rows = _run(networks, row_of, journal, jobs, total_time_limit, on_row)
     missing = tuple(name for (name, _), row in zip(networks, rows, strict=True) if row is None)
@@ -250,6 +255,7 @@ def _row(
     folder: Path | None,
     on_findings: Callable[[Findings], None] | None,
     reading: ReadingOptions | None,
+    executor: Any,
 ) -> tuple[str | None, Row]:
     """Return the row of one network, and its key in the journal when it is to be remembered."""
     try:
@@ -260,7 +266,7 @@ def _row(
     known = journal.get(key)
     if known is not None and (folder is None or not known.certificate or Path(known.certificate).is_file()):
         return None, known
-    found = measure(name, read, question, folder)
+    found = measure(name, read, question, folder, executor)
     row = found.row if isinstance(found, Findings) else found
     if isinstance(found, Findings) and on_findings is not None:
         on_findings(found)

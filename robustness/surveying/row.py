@@ -166,21 +166,25 @@ class Findings:
     table: ToleranceTable
 
 
-def measure(name: str, graph: Digraph, question: Question, certificates: Path | None = None) -> Row | Findings:
+def measure(
+    name: str, graph: Digraph, question: Question, certificates: Path | None = None, executor: Any = None
+) -> Row | Findings:
     """Return what was found out about one network, or the row of an error.
 
     r* and s first, then the threat models, then the gates, all within one time limit; what it leaves undecided says so
-    in the row. With ``certificates``, a folder, the certificate that the network is r*-robust is written there.
+    in the row. With ``certificates``, a folder, the certificate that the network is r*-robust is written there;
+    ``executor`` solves the cubes of searches for r* and s.
     """
     started = time.monotonic()
     limits = Limits.of(question.time_limit, seed=question.seed)
+    spread = limits.spread_over(executor)
     try:
         # Half of the time: what r* and s leave goes to the models, and what they prove is asked of every one of them.
-        found = determine_robustness(graph, **limits.share(0.5 if question.models else 1.0).keywords())
+        found = determine_robustness(graph, **spread.share(0.5 if question.models else 1.0).keywords())
         models = {model: tolerance(graph, model, **limits.keywords()) for model in question.models}
         table = ToleranceTable(graph, tuple(models.values()))
-        standing = _standing(graph, question, found, table, limits)
-        certificate = "" if certificates is None else _certify(name, graph, found, certificates, limits)
+        standing = _standing(graph, question, found, table, spread)
+        certificate = "" if certificates is None else _certify(name, graph, found, certificates, spread)
     except RobustnessError as problem:
         return unreadable(name, problem, question.gate)
     bounds = found.bounds

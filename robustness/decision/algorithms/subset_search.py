@@ -25,6 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from robustness.answers import Answer
+from robustness.cubes.cube import ids_of, whole_state
 from robustness.digraph import Digraph
 from robustness.errors import InternalError, InvalidParameter
 from robustness.evidence import Exhausted, Pair, Refutation
@@ -104,6 +105,10 @@ def decide(
         raise InvalidParameter(f"blockers is 0, 1 or 2, not {blockers!r}")
     if graph.n > MOST_NODES:
         return Answer.undecided(f"subset-search takes at most {MOST_NODES} nodes")
+    if limits.steps is None and (limits.executor is not None or limits.state is not None):
+        from robustness.cubes.spreading import search_by_cubes
+
+        return search_by_cubes(graph, r, s, limits, transcript=transcript, blockers=blockers, look_ahead=look_ahead)
     return _Search(graph, r, s, limits, transcript, blockers, look_ahead).run()
 
 
@@ -121,7 +126,7 @@ class _Search:
         self.transcript = transcript
         self.blockers = blockers
         self.look_ahead = look_ahead
-        self.root = Cube(_whole_state(graph.n), symmetric=True)
+        self.root = Cube(whole_state(graph.n), symmetric=True)
         self.lock = threading.Condition()
         self.queue: deque[Cube] = deque([self.root])
         self.busy = 0
@@ -220,7 +225,7 @@ class _Search:
         if status == CLOSED:
             return True
         if status == FOUND:
-            self._stop(pair=Pair(*(_ids(side) for side in np.asarray(search.pair))))
+            self._stop(pair=Pair(*(ids_of(side) for side in np.asarray(search.pair))))
             return True
         if status == GROW:
             stack, table = np.asarray(search.stack), np.asarray(search.table)
@@ -305,15 +310,3 @@ def _nodes_for(steps: int | None, n: int) -> int:
     """
     words = -(-n // 64)
     return UNLIMITED if steps is None else max(1, steps // (10_000 + 2 * n * n * words))
-
-
-def _whole_state(n: int) -> _Words:
-    """Return the state in which every node may be a satisfied member of either set."""
-    state = np.zeros((8, max(1, -(-n // 64))), np.uint64)
-    for node in range(n):
-        state[:4, node // 64] |= np.uint64(1) << np.uint64(node % 64)
-    return state
-
-
-def _ids(words: _Words) -> frozenset[int]:
-    return frozenset(np.flatnonzero(np.unpackbits(words.view(np.uint8), bitorder="little")).tolist())

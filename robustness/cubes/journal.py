@@ -1,0 +1,159 @@
+"""The journal of cubes: what is closed, one checksummed line each, so that a killed run loses only the slices in hand.
+
+A line is 16 hexadecimal digits of the SHA-256 of what follows, a blank, and a JSON object. The first line names the
+format. Every other line has the ``question`` it belongs to (a digest of the graph, r, s, the switches and the version
+of the search), the ``cube`` it is about, and what came of it: the cubes that are ``rest`` (none: it is closed) with the
+``transcript`` before them, or the violating ``pair``. A cube is named by a digest of what it is, so a line is
+true wherever it stands, on whatever machine it is read, and in whatever order lines were written.
+
+A last line that was cut off is what a kill leaves behind, and is dropped; a damaged line before it is refused.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import os
+import time
+from contextlib import suppress
+from pathlib import Path
+from types import TracebackType
+from typing import IO, Any, Self
+
+from robustness.cubes.cube import Cube
+from robustness.errors import InvalidParameter
+
+__all__ = ["CubeJournal", "Entry"]
+
+_FORMAT = "robustness/cubes/1"
+
+#: Seconds between two times at which the disk itself is waited for.
+_SYNC = 1.0
+
+#: What is known of a cube: as :func:`robustness.cubes.solving.solve` returns it, with ``rest`` a list of cubes.
+Entry = dict[str, Any]
+
+
+class CubeJournal:
+    """Entries of one question by the keys of their cubes, read when it is opened and appended as they come.
+
+    Parameters
+    ----------
+    path : path or None
+        None: nothing is remembered.
+    question : str
+        The digest of what is asked.
+    words : int
+        Of a row of a state.
+
+    Raises
+    ------
+    InvalidParameter
+        When the file is no journal of cubes, a line before the last is damaged, or another run writes to it.
+    OSError
+        When it cannot be read or written.
+    """
+
+    def __init__(self, path: Path | None, question: str, words: int) -> None:
+        self.entries: dict[str, Entry] = {}
+        self._question, self._words = question, words
+        self._stream: IO[bytes] | None = None
+        self._synced = time.monotonic()
+        if path is None:
+            return
+        self._stream = open(path, "a+b")  # noqa: SIM115 - closed by __exit__
+        try:
+            _lock(self._stream, path)
+            self._stream.truncate(self._read(path))
+        except BaseException:
+            self._stream.close()
+            raise
+        if not self._stream.tell():
+            self._append({"format": _FORMAT})
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, tb: TracebackType | None) -> None:
+        if self._stream is not None:
+            self._stream.flush()
+            with suppress(OSError):
+                os.fsync(self._stream.fileno())
+            self._stream.close()
+
+    def remember(self, cube: Cube, entry: Entry) -> None:
+        """Append what came of a cube; it is in the hands of the system when this returns."""
+        self.entries[cube.key] = entry
+        if self._stream is None:
+            return
+        line: dict[str, Any] = {
+            "question": self._question,
+            "cube": cube.key,
+            "nodes": entry["nodes"],
+            "transcript": base64.b64encode(entry["transcript"]).decode("ascii"),
+            "rest": [
+                (base64.b64encode(data).decode("ascii"), flags) for data, flags in map(Cube.to_wire, entry["rest"])
+            ],
+        }
+        if "pair" in entry:
+            line["pair"] = entry["pair"]
+        self._append(line)
+
+    def _append(self, content: dict[str, Any]) -> None:
+        if self._stream is None:
+            return
+        text = json.dumps(content, separators=(",", ":")).encode("ascii")
+        self._stream.write(_checksum(text) + b" " + text + b"\n")
+        self._stream.flush()
+        if time.monotonic() - self._synced > _SYNC:
+            os.fsync(self._stream.fileno())
+            self._synced = time.monotonic()
+
+    def _read(self, path: Path) -> int:
+        """Read all whole lines; return where they end."""
+        if self._stream is None:
+            return 0
+        self._stream.seek(0)
+        ends, number = 0, 0
+        for number, line in enumerate(self._stream, 1):
+            checksum, _, text = line.rstrip(b"\n").partition(b" ")
+            is_whole = line.endswith(b"\n") and checksum == _checksum(text)
+            if not is_whole and not line.endswith(b"\n") and number > 1:
+                break
+            content = json.loads(text) if is_whole else {}
+            if number == 1 and content.get("format") != _FORMAT:
+                raise InvalidParameter(
+                    f"{path} is no journal of cubes: name another file, or one that is not there yet"
+                )
+            if not is_whole:
+                raise InvalidParameter(
+                    f"{path}, line {number}: damaged; delete this line to go on without what it says"
+                )
+            if content.get("question") == self._question:
+                self._take(content)
+            ends += len(line)
+        return ends
+
+    def _take(self, content: dict[str, Any]) -> None:
+        rest = [Cube.from_wire((base64.b64decode(data), flags), self._words) for data, flags in content["rest"]]
+        entry = {"nodes": content["nodes"], "transcript": base64.b64decode(content["transcript"]), "rest": rest}
+        if "pair" in content:
+            entry["pair"] = content["pair"]
+        self.entries.setdefault(content["cube"], entry)
+
+
+def _checksum(text: bytes) -> bytes:
+    return hashlib.sha256(text).hexdigest()[:16].encode("ascii")
+
+
+def _lock(stream: IO[bytes], path: Path) -> None:
+    """Keep a second run from writing to the same file, where the system can."""
+    try:
+        import fcntl
+    except ImportError:  # not on this system
+        return
+    try:
+        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as taken:
+        raise InvalidParameter(f"{path} is in use by another run: wait for it, or name another file") from taken
