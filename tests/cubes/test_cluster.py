@@ -18,8 +18,8 @@ from typing import Any
 import pytest
 
 import robustness as rb
-from certificates import verify
 from robustness.cubes import opened_cluster, software, spreading
+from robustness.evidence import Refutation
 from tests.cubes.instances import ENDLESS, LONG, MIDDLE, SMALL
 
 distributed = pytest.importorskip("distributed")
@@ -88,7 +88,7 @@ def test_an_address_is_looked_at() -> None:
 def test_workers_killed_at_random_times_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(spreading, "_FIRST_SLICE", 0.05)
     graph, r = MIDDLE
-    alone = rb.certify(graph, r, evidence="refutation")
+    alone = rb.check_rs_robustness(graph, r, transcript=True).basis
     draws, over, killed = random.Random(5), threading.Event(), []
     with opened_cluster("local:2") as client:
         same = rb.check_rs_robustness(graph, r, executor=client)
@@ -103,13 +103,13 @@ def test_workers_killed_at_random_times_change_nothing(monkeypatch: pytest.Monke
 
         killer = threading.Thread(target=kill_now_and_then)
         killer.start()
-        found = rb.certify(graph, r, evidence="refutation", executor=client, time_limit=120)
+        found = rb.check_rs_robustness(graph, r, transcript=True, executor=client, time_limit=120)
         over.set()
         killer.join()
     assert killed
     assert found.verdict is rb.Verdict.ROBUST
-    assert found.certificate == alone.certificate
-    assert verify(graph.canonical_bytes(), found.certificate or b"").verdict == "robust"
+    assert isinstance(found.basis, Refutation)
+    assert found.basis == alone  # byte for byte the transcript of one thread
 
 
 def test_a_worker_of_another_version_is_refused_and_the_others_go_on(tmp_path: Path) -> None:
