@@ -101,7 +101,7 @@ class Master:
         if hint is not None:
             for a, x in enumerate(self._x):
                 self._model.add_hint(x, a in hint)
-        status, solver = solve_within(self._model, limits, effort)
+        status, solver = solve_within(self._model, limits, effort, relaxed=True)
         if status == cp_model.INFEASIBLE:
             return Proposal(None, None, is_optimal=False)
         bound = max(0, math.ceil(solver.best_objective_bound - 1e-6))

@@ -82,10 +82,10 @@ def _variables(model: Any, graph: Digraph, question: Question) -> tuple[list[Any
     return normal, inside, malicious
 
 
-def solve_within(model: Any, limits: Limits, effort: float | None = None) -> tuple[Any, Any]:
+def solve_within(model: Any, limits: Limits, effort: float | None = None, *, relaxed: bool = False) -> tuple[Any, Any]:
     """Return the status and the solver. Ctrl-C is served while it runs, and stops it. A crash of the solver is an
-    InternalError. ``effort`` bounds the work in the solver's own units, which are counted and not timed, and puts it
-    into the linear relaxation: a bound soon, for large models, rather than a solution.
+    InternalError. ``effort`` bounds the work in the solver's own units, which are counted and not timed. ``relaxed``
+    puts more of it into the linear relaxation: better bounds, for models whose rows are sums, rather than solutions.
     """
     from ortools.sat.python import cp_model
 
@@ -97,6 +97,7 @@ def solve_within(model: Any, limits: Limits, effort: float | None = None) -> tup
         solver.parameters.max_time_in_seconds = max(limits.seconds_left(), 1e-3)
     if effort is not None:
         solver.parameters.max_deterministic_time = effort
+    if relaxed:
         solver.parameters.linearization_level = 2
 
     def work() -> Any:
