@@ -11,6 +11,7 @@ import networkx as nx
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 
 import robustness as rb
@@ -270,7 +271,7 @@ def test_no_node_of_a_flat_picture_is_cut_off() -> None:
     figure.draw_without_rendering()
     box = axes.get_window_extent()
     assert box.height > figure.bbox.height / 2
-    for group in (each for each in axes.collections if len(each.get_offsets())):
+    for group in (each for each in axes.collections if isinstance(each, PathCollection)):
         radius = (group.get_sizes()[0] ** 0.5) / 2 * figure.dpi / 72
         for _, y in axes.transData.transform(group.get_offsets()):
             assert box.y0 + radius <= y <= box.y1 - radius
