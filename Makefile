@@ -92,7 +92,13 @@ types: $(READY) ## mypy --strict
 
 docs: $(READY) ## the documentation, warnings as errors, into build/docs
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs $(BUILD)/docs
+	$(BIN)/python -m benchmarks.atlas page $(BUILD)/docs/atlas.html
 	@echo "documentation: $(BUILD)/docs/index.html"
+
+atlas: $(READY) ## survey all topohub networks and small graphs anew into docs/atlas.jsonl (half an hour), and its page
+	$(BIN)/python -m benchmarks.atlas measure
+	@mkdir -p $(BUILD)/docs
+	$(BIN)/python -m benchmarks.atlas page $(BUILD)/docs/atlas.html
 
 SECONDS := 60
 fuzz: $(READY) ## mutated files, certificates and options for SECONDS=60: only promised exit codes; build/fuzz keeps finds

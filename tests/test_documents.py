@@ -66,6 +66,36 @@ def test_the_block_is_what_the_commands_print(page: Path, match: re.Match[str]) 
     assert lasting(match["text"]) == lasting(as_shown(match["commands"], match["language"]))
 
 
+def test_the_first_screen_prints_what_it_shows() -> None:
+    page = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    code, shown = re.findall(r"^```(?:python|text)\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+    assert sum(map(bool, code.splitlines())) == 3
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True)
+    assert done.stdout == shown
+
+
+def test_every_reference_has_an_address_that_lasts() -> None:
+    text = (ROOT / "docs" / "references.md").read_text(encoding="utf-8")
+    entries = re.split(r"^\d+\. ", text, flags=re.MULTILINE)[1:]
+    assert len(entries) > 5
+    assert [each for each in entries if not re.search(r"https://(doi\.org/10|arxiv\.org/abs)", each)] == []
+
+
+def test_users_and_developers_have_pages_of_their_own() -> None:
+    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    assert re.findall(r":caption: (.*)", index) == ["Tutorials", "How to", "Why it is true", "Reference"]
+    assert "adr" not in index
+
+
+def test_the_atlas_is_whole() -> None:
+    rows = [json.loads(line) for line in (ROOT / "docs" / "atlas.jsonl").read_text(encoding="utf-8").splitlines()]
+    names = [row["network"] for row in rows]
+    assert len(names) == len(set(names))
+    assert sum(name.startswith("topohub:") for name in names) == 707
+    assert sum(name.startswith("census:") for name in names) == 1 + 2 + 6 + 21 + 112
+    assert [row["network"] for row in rows if row["error"]] == []
+
+
 def rewrite() -> None:
     """Write every block anew."""
     for page in PAGES:
