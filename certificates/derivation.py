@@ -187,4 +187,4 @@ class Derivation:
 
     def reject(self, why: str) -> RejectedCertificate:
         """Return the error that says what is wrong, and where; step 0 is the seed."""
-        return RejectedCertificate(f"derivation, step {self.step}: {why}")
+        return RejectedCertificate(f"derivation, step {self.step}: {why}", "derivation")

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from itertools import pairwise
 from typing import Any
 
-from certificates.errors import MalformedCertificate
+from certificates.errors import MalformedCertificate, Misuse, RejectedCertificate
+from certificates.strict_json import parse
 
 __all__ = [
     "MAX_CERTIFICATE_BYTES",
@@ -13,6 +15,8 @@ __all__ = [
     "id_list",
     "id_set",
     "kind_of",
+    "open_certificate",
+    "require_about",
     "require_keys",
     "shown",
     "split_header",
@@ -21,6 +25,41 @@ __all__ = [
 #: Bytes of a certificate, and of its first line, that are read at most.
 MAX_CERTIFICATE_BYTES = 2**30
 MAX_HEADER_BYTES = 2**26
+
+
+def open_certificate(
+    subject_bytes: bytes, certificate_bytes: bytes, subject: str, formats: Collection[str]
+) -> tuple[dict[str, Any], bytes]:
+    """Return the header and the body of a certificate of one of these formats about a graph or a sequence.
+
+    The digest of the subject, which the header names under the key ``subject``, is compared by :func:`require_about`.
+
+    Raises
+    ------
+    Misuse
+        When an argument is not bytes.
+    MalformedCertificate
+        When it is not a certificate of the formats.
+    """
+    if not all(isinstance(data, bytes) for data in (subject_bytes, certificate_bytes)):
+        raise Misuse(f"a verifier takes two bytes objects: the {subject} and the certificate")
+    if len(certificate_bytes) > MAX_CERTIFICATE_BYTES:
+        raise MalformedCertificate(f"a certificate has at most {MAX_CERTIFICATE_BYTES} bytes")
+    header, body = split_header(certificate_bytes)
+    document = parse(header, MalformedCertificate, "the certificate")
+    document = require_keys(document, "the certificate", f"format {subject} claim evidence")
+    found = document["format"]
+    if type(found) is not str or found not in formats:
+        raise MalformedCertificate(f"the format is {' or '.join(map(repr, formats))}, not {shown(found)}")
+    return document, body
+
+
+def require_about(document: dict[str, Any], subject: str, sha256: str) -> None:
+    """Refuse a certificate about another graph or sequence than the one with this digest."""
+    if document[subject] != sha256:
+        raise RejectedCertificate(
+            f"the certificate is about another {subject}: this one has SHA-256 {sha256}", "other-subject"
+        )
 
 
 def split_header(data: bytes) -> tuple[bytes, bytes]:

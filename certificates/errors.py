@@ -31,4 +31,18 @@ class MalformedGraph(MalformedCertificate):
 
 
 class RejectedCertificate(CertificateError, ValueError):
-    """A well-formed certificate that does not prove its claim about this graph."""
+    """A well-formed certificate that does not prove its claim about this graph.
+
+    Attributes
+    ----------
+    code : str
+        Which part does not hold, in one of the words of docs/certificate-format.md: for programs, as the text is for
+        people and may change. "unproven" when another checker says no more.
+    """
+
+    def __init__(self, text: str, code: str = "unproven") -> None:
+        super().__init__(text, code)
+        self.code = code
+
+    def __str__(self) -> str:
+        return str(self.args[0])

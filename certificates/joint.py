@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from itertools import accumulate, pairwise
 from typing import Any
 
-from certificates.envelope import MAX_CERTIFICATE_BYTES, kind_of, require_keys, shown, split_header
-from certificates.errors import CertificateError, MalformedCertificate, MalformedGraph, Misuse, RejectedCertificate
+from certificates.envelope import kind_of, open_certificate, require_about, require_keys, shown
+from certificates.errors import MalformedCertificate, MalformedGraph, RejectedCertificate
 from certificates.graph import Label, digest, encode_graph, label_key, valid_labels
 from certificates.strict_json import parse
 from certificates.verification import VerifiedClaim, verify
@@ -103,19 +103,10 @@ def verify_joint(sequence_bytes: bytes, certificate_bytes: bytes) -> VerifiedJoi
     RejectedCertificate
         When the certificate does not prove its claim about this sequence.
     """
-    if not all(isinstance(data, bytes) for data in (sequence_bytes, certificate_bytes)):
-        raise Misuse("verify_joint takes two bytes objects: the sequence and the certificate")
-    if len(certificate_bytes) > MAX_CERTIFICATE_BYTES:
-        raise MalformedCertificate(f"a certificate has at most {MAX_CERTIFICATE_BYTES} bytes")
-    header, body = split_header(certificate_bytes)
-    document = parse(header, MalformedCertificate, "the certificate")
-    document = require_keys(document, "the certificate", "format sequence claim evidence")
-    if document["format"] != FORMAT:
-        raise MalformedCertificate(f"the format is {FORMAT!r}, not {shown(document['format'])}")
+    document, body = open_certificate(sequence_bytes, certificate_bytes, "sequence", [FORMAT])
     claim = require_keys(document["claim"], "the claim", "property r s window verdict")
     sequence = _decode_sequence(sequence_bytes)
-    if document["sequence"] != sequence.sha256:
-        raise RejectedCertificate(f"the certificate is about another sequence: this one has SHA-256 {sequence.sha256}")
+    require_about(document, "sequence", sequence.sha256)
     check = _Check(sequence, *_claim_numbers(claim, len(sequence.labels)))
     evidence, verdict, start = document["evidence"], claim["verdict"], None
     kind = kind_of(evidence)
@@ -259,18 +250,20 @@ class _Check:
             raise MalformedCertificate(f"unions is a list of numbers of certificates in 0..{len(lengths) - 1}")
         starts = self.sequence.starts(self.length)
         if not starts:
-            raise RejectedCertificate(f"no window of {self.length} steps fits, and what is not seen is not claimed")
+            raise RejectedCertificate(
+                f"no window of {self.length} steps fits, and what is not seen is not claimed", "windows"
+            )
         if len(named) != len(starts):
-            raise RejectedCertificate(f"there are {len(starts)} windows, not {len(named)}")
+            raise RejectedCertificate(f"there are {len(starts)} windows, not {len(named)}", "windows")
         ends = list(accumulate(lengths))
         proven: dict[int, VerifiedClaim] = {}
         for start, i, union in zip(starts, named, self.sequence.unions(self.length, starts), strict=True):
             if i not in proven:
                 proven[i] = self._verified(start, union, body[ends[i] - lengths[i] : ends[i]], "robust")
             elif digest(union) != proven[i].sha256:
-                raise RejectedCertificate(f"window {start}: its union is not the graph of certificate {i}")
+                raise RejectedCertificate(f"window {start}: its union is not the graph of certificate {i}", "windows")
         if len(proven) < len(lengths):
-            raise RejectedCertificate(f"{len(lengths) - len(proven)} certificates are named for no window")
+            raise RejectedCertificate(f"{len(lengths) - len(proven)} certificates are named for no window", "windows")
         return list(proven.values())
 
     def violation(self, start: Any, body: bytes) -> list[VerifiedClaim]:
@@ -278,7 +271,7 @@ class _Check:
         if type(start) is not int:
             raise MalformedCertificate("start is an integer")
         if start not in self.sequence.starts(self.length):
-            raise RejectedCertificate(f"no window of {self.length} steps to be looked at starts at {start}")
+            raise RejectedCertificate(f"no window of {self.length} steps to be looked at starts at {start}", "windows")
         (union,) = self.sequence.unions(self.length, range(start, start + 1))
         return [self._verified(start, union, body, "not-robust")]
 
@@ -287,18 +280,21 @@ class _Check:
         if body:
             raise MalformedCertificate(f"{len(body)} bytes follow the header, but evidence 'no-window' has no body")
         if self.sequence.starts(self.length):
-            raise RejectedCertificate(f"there are windows of {self.length} steps")
+            raise RejectedCertificate(f"there are windows of {self.length} steps", "windows")
         return []
 
     def _verified(self, start: int, union: bytes, certificate: bytes, verdict: str) -> VerifiedClaim:
         """Return what the ordinary kernel proves about the union, which must be the joint claim's own verdict."""
         try:
             claim = verify(union, certificate)
-        except CertificateError as problem:
+        except RejectedCertificate as problem:
+            raise RejectedCertificate(f"window {start}: {problem}", problem.code) from None
+        except MalformedCertificate as problem:
             raise type(problem)(f"window {start}: {problem}") from None
         if (claim.verdict, claim.r, claim.s) != (verdict, self.r, self.s):
             raise RejectedCertificate(
                 f"window {start}: its certificate is about ({claim.r},{claim.s}), {claim.verdict}, "
-                f"not about ({self.r},{self.s}), {verdict}"
+                f"not about ({self.r},{self.s}), {verdict}",
+                "other-claim",
             )
         return claim

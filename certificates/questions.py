@@ -19,7 +19,7 @@ from certificates.joint import VerifiedJointClaim, verify_joint
 from certificates.mending import FORMAT as MENDING_FORMAT
 from certificates.mending import VerifiedMendingClaim, verify_mending
 from certificates.strict_json import parse
-from certificates.tolerance import FORMAT as TOLERANCE_FORMAT
+from certificates.tolerance import FORMATS as TOLERANCE_FORMATS
 from certificates.tolerance import VerifiedToleranceClaim, verify_tolerance
 from certificates.verification import FORMAT, VerifiedClaim, verify
 
@@ -30,7 +30,7 @@ Claim = VerifiedClaim | VerifiedJointClaim | VerifiedToleranceClaim | VerifiedMe
 _VERIFIERS: dict[str, Callable[[bytes, bytes], Claim]] = {
     FORMAT: verify,
     JOINT_FORMAT: verify_joint,
-    TOLERANCE_FORMAT: verify_tolerance,
+    **dict.fromkeys(TOLERANCE_FORMATS, verify_tolerance),
     MENDING_FORMAT: verify_mending,
 }
 

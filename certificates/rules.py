@@ -13,59 +13,23 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from certificates.errors import MalformedCertificate
 from certificates.graph import CanonicalGraph
+from certificates.masks import Contradiction, Network, masks_of
 
-__all__ = ["MAX_LOOKS", "Contradiction", "Question", "State", "excludes", "settle"]
-
-#: Looks at a node, each a few operations on masks, that a refutation may ask for: half an hour or so.
-MAX_LOOKS = 2**32
-
-
-class Contradiction(Exception):
-    """The state stands for no violating pair. It closes a branch of the tree and never leaves the kernel."""
+__all__ = ["Question", "State", "excludes", "settle"]
 
 
 @dataclass(slots=True)
-class Question:
-    """Is this graph (r,s)-robust: in- and out-neighbours as bit masks, the needs, and how many nodes may be exempt."""
+class Question(Network):
+    """Is this graph (r,s)-robust: the network, the needs, and how many nodes may be exempt."""
 
-    hears: tuple[int, ...]
-    heard_by: tuple[int, ...]
-    need: tuple[int, ...]
     spare: int
-    #: Looks at nodes so far, each weighted with the length of a mask.
-    looks: int = 0
 
     @classmethod
     def of(cls, graph: CanonicalGraph, r: int, s: int) -> Question:
         """Return the question about ``graph``."""
-        heard_by = [0] * graph.n
-        for i, heard in enumerate(graph.hears):
-            for j in heard:
-                heard_by[j] |= 1 << i
-        hears = tuple(sum(1 << j for j in heard) for heard in graph.hears)
-        return cls(hears, tuple(heard_by), tuple(max(0, len(heard) - r + 1) for heard in graph.hears), s - 1)
-
-    def look_at(self, nodes: int) -> None:
-        """Count a step that looks at these nodes, so that no transcript keeps the checker busy for ever.
-
-        Raises
-        ------
-        MalformedCertificate
-            When there have been too many.
-        """
-        self.looks += (1 + nodes.bit_count()) * (1 + len(self.need) // 1024)
-        if self.looks > MAX_LOOKS:
-            raise MalformedCertificate(f"a refutation may ask for at most {MAX_LOOKS} looks at nodes")
-
-    def hearing(self, nodes: int) -> int:
-        """Return who hears any of ``nodes``."""
-        found = 0
-        while nodes:
-            found |= self.heard_by[(nodes & -nodes).bit_length() - 1]
-            nodes &= nodes - 1
-        return found
+        hears, heard_by = masks_of(graph)
+        return cls(hears, heard_by, tuple(max(0, len(heard) - r + 1) for heard in graph.hears), s - 1)
 
 
 class State:

@@ -15,15 +15,18 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
-from certificates.envelope import MAX_CERTIFICATE_BYTES, id_set, kind_of, require_keys, shown, split_header
-from certificates.errors import MalformedCertificate, Misuse, RejectedCertificate
+from certificates.envelope import id_set, kind_of, open_certificate, require_about, require_keys, shown
+from certificates.errors import MalformedCertificate, RejectedCertificate
 from certificates.graph import CanonicalGraph, decode_graph, encode_graph
-from certificates.strict_json import parse
+from certificates.separation import check_separation
 from certificates.verification import verify
 
-__all__ = ["FORMAT", "VerifiedToleranceClaim", "verify_tolerance", "without"]
+__all__ = ["FORMAT", "FORMATS", "FORMAT_WITH_REFUTATIONS", "VerifiedToleranceClaim", "verify_tolerance", "without"]
 
+#: The second has one kind of evidence more, "refutation"; whatever the first accepts, the second does too.
 FORMAT = "robustness/tolerance-certificate/1"
+FORMAT_WITH_REFUTATIONS = "robustness/tolerance-certificate/2"
+FORMATS = (FORMAT, FORMAT_WITH_REFUTATIONS)
 
 _MOST = 2**31
 
@@ -43,7 +46,7 @@ class VerifiedToleranceClaim:
     arcs: int
     #: Ordinary certificates that were verified.
     certificates: int = 0
-    #: Nodes of search trees that were replayed in them.
+    #: Nodes of search trees that were replayed, in them or in the certificate's own refutation.
     tree_nodes: int = 0
 
     def __str__(self) -> str:
@@ -75,19 +78,10 @@ def verify_tolerance(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedTo
     RejectedCertificate
         When the certificate does not prove its claim about this graph.
     """
-    if not all(isinstance(data, bytes) for data in (graph_bytes, certificate_bytes)):
-        raise Misuse("verify_tolerance takes two bytes objects: the graph and the certificate")
-    if len(certificate_bytes) > MAX_CERTIFICATE_BYTES:
-        raise MalformedCertificate(f"a certificate has at most {MAX_CERTIFICATE_BYTES} bytes")
-    header, body = split_header(certificate_bytes)
-    document = parse(header, MalformedCertificate, "the certificate")
-    document = require_keys(document, "the certificate", "format graph claim evidence")
-    if document["format"] != FORMAT:
-        raise MalformedCertificate(f"the format is {FORMAT!r}, not {shown(document['format'])}")
+    document, body = open_certificate(graph_bytes, certificate_bytes, "graph", FORMATS)
     f, faces, bound, verdict = _claim(require_keys(document["claim"], "the claim", "f faces bound verdict"))
     graph = decode_graph(graph_bytes)
-    if document["graph"] != graph.sha256:
-        raise RejectedCertificate(f"the certificate is about another graph: this one has SHA-256 {graph.sha256}")
+    require_about(document, "graph", graph.sha256)
     evidence, kind = document["evidence"], kind_of(document["evidence"])
     used = tree_nodes = 0
     match verdict, kind:
@@ -101,6 +95,9 @@ def verify_tolerance(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedTo
         case "together", "removals":
             lengths = require_keys(evidence, "the evidence", "kind lengths")["lengths"]
             used, tree_nodes = _check_removals(graph, f, (faces, bound), lengths, body)
+        case "together", "refutation" if document["format"] == FORMAT_WITH_REFUTATIONS:
+            require_keys(evidence, "the evidence", "kind")
+            tree_nodes = check_separation(graph, f, faces, bound, body)
         case _:
             raise MalformedCertificate(f"there is no evidence of kind {shown(kind)} for the verdict {verdict!r}")
     return VerifiedToleranceClaim(
@@ -125,22 +122,22 @@ def _check_sets(graph: CanonicalGraph, f: int, faces: int, bound: str, evidence:
     """The definition, clause by clause."""
     M, S1, S2 = (set(id_set(evidence[name], graph.n, name)) for name in ("M", "S1", "S2"))
     if S1 & S2 or not S1 - M or not S2 - M:
-        raise RejectedCertificate("S1 and S2 are not disjoint with a normal node in each")
+        raise RejectedCertificate("S1 and S2 are not disjoint with a normal node in each", "sets")
     if faces == 2 and M & (S1 | S2):
-        raise RejectedCertificate("with two faces M is outside S1 and S2")
+        raise RejectedCertificate("with two faces M is outside S1 and S2", "sets")
     if faces == 1 and M - S1 - S2:
-        raise RejectedCertificate("with one face M lies inside S1 and S2")
+        raise RejectedCertificate("with one face M lies inside S1 and S2", "sets")
     if bound == "total" and len(M) > f:
-        raise RejectedCertificate(f"M has {len(M)} nodes, more than f = {f}")
+        raise RejectedCertificate(f"M has {len(M)} nodes, more than f = {f}", "sets")
     if bound == "local":
         for i, heard in enumerate(graph.hears):
             if i not in M and len(M.intersection(heard)) > f:
-                raise RejectedCertificate(f"node {i} is outside M and hears more than f = {f} nodes of M")
+                raise RejectedCertificate(f"node {i} is outside M and hears more than f = {f} nodes of M", "sets")
     for side in (S1, S2):
         inside = side | M if faces == 2 else side
         for i in side - M:
             if sum(j not in inside for j in graph.hears[i]) > f:
-                raise RejectedCertificate(f"node {i} hears more than f = {f} nodes outside its side")
+                raise RejectedCertificate(f"node {i} hears more than f = {f} nodes outside its side", "sets")
 
 
 def _check_robust(graph_bytes: bytes, certificate: bytes, r: int) -> int:
@@ -151,7 +148,7 @@ def _check_robust(graph_bytes: bytes, certificate: bytes, r: int) -> int:
     """
     claim = verify(graph_bytes, certificate)
     if (claim.verdict, claim.r, claim.s) != ("robust", r, 1):
-        raise RejectedCertificate(f"the ordinary certificate proves another claim than {r}-robustness")
+        raise RejectedCertificate(f"the ordinary certificate proves another claim than {r}-robustness", "other-claim")
     return claim.tree_nodes
 
 
@@ -168,9 +165,11 @@ def _check_removals(graph: CanonicalGraph, f: int, kind: tuple[int, str], length
     if sum(lengths) != len(body):
         raise MalformedCertificate(f"the lengths add up to {sum(lengths)} bytes, but {len(body)} follow the header")
     if graph.n < f + 2:
-        raise RejectedCertificate(f"removals need at least f + 2 = {f + 2} nodes")
+        raise RejectedCertificate(f"removals need at least f + 2 = {f + 2} nodes", "removals")
     if not _counts_subsets(len(lengths), graph.n, f):
-        raise RejectedCertificate(f"{len(lengths)} certificates are not one for every set of {f} of {graph.n} nodes")
+        raise RejectedCertificate(
+            f"{len(lengths)} certificates are not one for every set of {f} of {graph.n} nodes", "removals"
+        )
     place = tree_nodes = 0
     for removed, length in zip(combinations(range(graph.n), f), lengths, strict=True):
         tree_nodes += _check_robust(without(graph, removed), body[place : place + length], f + 1)

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from certificates.derivation import Derivation
-from certificates.envelope import MAX_CERTIFICATE_BYTES, id_list, id_set, kind_of, require_keys, shown, split_header
-from certificates.errors import MalformedCertificate, Misuse, RejectedCertificate
+from certificates.envelope import id_list, id_set, kind_of, open_certificate, require_about, require_keys, shown
+from certificates.errors import MalformedCertificate, RejectedCertificate
 from certificates.graph import CanonicalGraph, decode_graph
 from certificates.refutation import check_refutation
-from certificates.strict_json import parse
 
 __all__ = ["FORMAT", "VerifiedClaim", "verify"]
 
@@ -58,25 +57,18 @@ def verify(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedClaim:
     RejectedCertificate
         When the certificate does not prove its claim about this graph.
     """
-    if not all(isinstance(data, bytes) for data in (graph_bytes, certificate_bytes)):
-        raise Misuse("verify takes two bytes objects: the graph and the certificate")
-    if len(certificate_bytes) > MAX_CERTIFICATE_BYTES:
-        raise MalformedCertificate(f"a certificate has at most {MAX_CERTIFICATE_BYTES} bytes")
-    header, body = split_header(certificate_bytes)
-    document = parse(header, MalformedCertificate, "the certificate")
-    document = require_keys(document, "the certificate", "format graph claim evidence")
-    if document["format"] != FORMAT:
-        raise MalformedCertificate(f"the format is {FORMAT!r}, not {shown(document['format'])}")
+    document, body = open_certificate(graph_bytes, certificate_bytes, "graph", [FORMAT])
     claim = require_keys(document["claim"], "the claim", "property r s verdict")
     evidence = document["evidence"]
     graph = decode_graph(graph_bytes)
-    if document["graph"] != graph.sha256:
-        raise RejectedCertificate(f"the certificate is about another graph: this one has SHA-256 {graph.sha256}")
+    require_about(document, "graph", graph.sha256)
     r, s = _claim_numbers(claim, graph.n)
     kind, verdict = kind_of(evidence), claim["verdict"]
     if verdict == "robust" and r > (graph.n + 1) // 2:
         # Lemma 2; on one node, where no pair exists, it is the convention.
-        raise RejectedCertificate(f"no graph on {graph.n} node(s) is ({r},{s})-robust: r is at most ceil(n/2)")
+        raise RejectedCertificate(
+            f"no graph on {graph.n} node(s) is ({r},{s})-robust: r is at most ceil(n/2)", "beyond-half"
+        )
     tree_nodes = 0
     match verdict, kind:
         case "not-robust", "violation":
@@ -114,12 +106,13 @@ def _check_violation(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, 
     """The definition: S1 and S2 are nonempty and disjoint, neither is all r-reachable, fewer than s nodes are."""
     pair = [set(id_set(evidence[name], graph.n, name)) for name in ("S1", "S2")]
     if not pair[0] or not pair[1] or pair[0] & pair[1]:
-        raise RejectedCertificate("S1 and S2 are not nonempty and disjoint")
+        raise RejectedCertificate("S1 and S2 are not nonempty and disjoint", "violation")
     reachable = [sum(len([j for j in graph.hears[i] if j not in S]) >= r for i in S) for S in pair]
     if reachable[0] == len(pair[0]) or reachable[1] == len(pair[1]) or sum(reachable) >= s:
         raise RejectedCertificate(
             f"the pair does not violate ({r},{s})-robustness: {reachable[0]} of {len(pair[0])} and {reachable[1]} of "
-            f"{len(pair[1])} nodes have at least {r} in-neighbours outside their set"
+            f"{len(pair[1])} nodes have at least {r} in-neighbours outside their set",
+            "violation",
         )
 
 
@@ -137,7 +130,9 @@ def _check_direct(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any
     if body:
         raise MalformedCertificate(f"{len(body)} bytes follow the header, but evidence of kind 'degree' has no body")
     if least < graph.n // 2 + r - 1:
-        raise RejectedCertificate(f"the least in-degree {least} is below floor(n/2) + r - 1 = {graph.n // 2 + r - 1}")
+        raise RejectedCertificate(
+            f"the least in-degree {least} is below floor(n/2) + r - 1 = {graph.n // 2 + r - 1}", "degree"
+        )
     return 0
 
 
@@ -151,9 +146,11 @@ def _check_growth(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any
     order = id_list(evidence["order"], graph.n, "order")
     proof = require_keys(evidence["proof"], "the proof of the seed", "kind")
     if sorted(seed + order) != list(range(graph.n)):
-        raise RejectedCertificate("seed and order together do not list every node once")
+        raise RejectedCertificate("seed and order together do not list every node once", "growth")
     if len(seed) < s:
-        raise RejectedCertificate(f"a seed of {len(seed)} nodes cannot be ({r},{s})-robust: s is at most its size")
+        raise RejectedCertificate(
+            f"a seed of {len(seed)} nodes cannot be ({r},{s})-robust: s is at most its size", "growth"
+        )
     index = {node: i for i, node in enumerate(seed)}
     induced = CanonicalGraph(
         tuple(graph.labels[i] for i in seed),
@@ -165,7 +162,9 @@ def _check_growth(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any
     for node in order:
         heard = sum(j in present for j in graph.hears[node])
         if heard < r + s - 1:
-            raise RejectedCertificate(f"node {node} hears {heard} earlier nodes, below r + s - 1 = {r + s - 1}")
+            raise RejectedCertificate(
+                f"node {node} hears {heard} earlier nodes, below r + s - 1 = {r + s - 1}", "growth"
+            )
         present.add(node)
     return tree_nodes
 
@@ -182,8 +181,12 @@ def _check_derivation(graph: CanonicalGraph, r: int, s: int, evidence: dict[str,
     made.weaken(r, s)
     ids = id_list(evidence["ids"], graph.n, "ids")
     if len(ids) != len(made.hears) or sorted(ids) != list(range(graph.n)):
-        raise RejectedCertificate(f"ids do not name each of the {graph.n} nodes once, for {len(made.hears)} nodes made")
+        raise RejectedCertificate(
+            f"ids do not name each of the {graph.n} nodes once, for {len(made.hears)} nodes made", "derivation"
+        )
     for i, heard in zip(ids, made.hears, strict=True):
         if {ids[j] for j in heard} != set(graph.hears[i]):
-            raise RejectedCertificate(f"node {i} of the graph hears others than in the graph that the steps make")
+            raise RejectedCertificate(
+                f"node {i} of the graph hears others than in the graph that the steps make", "derivation"
+            )
     return tree_nodes

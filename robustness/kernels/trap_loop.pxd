@@ -1,10 +1,10 @@
 cimport cython
-from robustness.kernels.search_rules cimport copy_state, core
+from robustness.kernels.search_rules cimport copy_state, core, varint
 from robustness.kernels.trap_rules cimport TrapRules, assume
 from robustness.kernels.words cimport SOURCES, bit_of, count, first, number, word
 
-cdef int P, Q, F, T, Z, NORMAL, MALICIOUS, NODES, FAILED, PROBES
-cdef int CLOSED, FOUND, PAUSED, GROW, STUCK, _SOLVED, _NOTHING, _CONTRADICTION
+cdef int P, Q, F, T, Z, NORMAL, MALICIOUS, ROOT, BRANCH, NODES, FAILED, PROBES
+cdef int CLOSED, FOUND, PAUSED, FLUSH, GROW, STUCK, _SOLVED, _NOTHING, _CONTRADICTION
 
 @cython.final
 cdef class TrapSearch:
@@ -38,7 +38,7 @@ cdef class TrapSearch:
 
     @cython.locals(
         words=number, shrink=number[:, ::1], weight=number, some=bint, failed=bint, w=number, v=number, side=number,
-        rest=word, score=number, best=number, chosen=number)
+        rest=word, score=number, best=number, chosen=number, start=number, place=number)
     cdef void _look_ahead(self, word[:, ::1] state) noexcept nogil
 
     @cython.locals(need=number[::1], chosen=number, w=number, v=number, rest=word)
@@ -51,8 +51,9 @@ cdef class TrapSearch:
 
     cdef number _choose(self, word[:, ::1] state, bint symmetric) noexcept nogil
 
-    @cython.locals(level=number, state=word[:, ::1], child=word[:, ::1], symmetric=bint, kind=number)
-    cdef number _search(self, number quota) noexcept nogil
+    @cython.locals(
+        level=number, state=word[:, ::1], child=word[:, ::1], symmetric=bint, kind=number, opcode=number, place=number)
+    cdef number _search(self, number quota, number room) noexcept nogil
 
-    @cython.locals(granted=number, why=number)
+    @cython.locals(granted=number, why=number, room=number)
     cpdef run(self, quota)

@@ -25,7 +25,7 @@ except ImportError:
     from robustness.kernels import uncompiled as cython
 
 if not cython.compiled:
-    from robustness.kernels.search_rules import copy_state, core
+    from robustness.kernels.search_rules import copy_state, core, varint
     from robustness.kernels.trap_rules import assume
     from robustness.kernels.words import bit_of, count, first
 
@@ -33,8 +33,10 @@ __all__ = ["TrapSearch"]
 
 P, Q, F, T, Z = layout.TRAP_P, layout.TRAP_Q, layout.TRAP_F, layout.TRAP_T, layout.TRAP_Z
 NORMAL, MALICIOUS = layout.NORMAL, layout.MALICIOUS
+ROOT, BRANCH = layout.ROOT, layout.BRANCH
 NODES, FAILED, PROBES = layout.NODES, layout.FAILED, layout.PROBES
-CLOSED, FOUND, PAUSED, GROW, STUCK = layout.CLOSED, layout.FOUND, layout.PAUSED, layout.GROW, layout.STUCK
+CLOSED, FOUND, PAUSED, FLUSH = layout.CLOSED, layout.FOUND, layout.PAUSED, layout.FLUSH
+GROW, STUCK = layout.GROW, layout.STUCK
 
 
 class TrapSearch:
@@ -191,6 +193,10 @@ class TrapSearch:
                     some = True
                     for side in range(2):
                         self.counters[PROBES] += 1
+                        start = self.rules.place
+                        if start >= 0:
+                            place = varint(self.rules.buffer, start, BRANCH + 2 * NORMAL + side)
+                            self.rules.place = varint(self.rules.buffer, place, v)
                         copy_state(self.scratch, state)
                         assume(self.scratch, NORMAL, side, v, 1, self.rules.two_faces)
                         if not self.rules.propagate(self.scratch):
@@ -204,6 +210,7 @@ class TrapSearch:
                             shrink[0, v] = -1
                             rest &= state[P, w] & state[P + 1, w]
                             break
+                        self.rules.place = start
                         shrink[side, v] = weight - self._weight(self.scratch)
             if not some:
                 self.side, self.node = 2, -1
@@ -280,9 +287,11 @@ class TrapSearch:
             self._any_open(state)
         return MALICIOUS if self.side >= 0 else _NOTHING
 
-    def _search(self, quota):
+    def _search(self, quota, room):
         while self.level >= 0:
             level = self.level
+            if self.rules.place >= 0 and self.rules.place > room:
+                return FLUSH
             if level + 2 > self.stack.shape[0]:
                 return GROW
             if quota <= 0:
@@ -308,6 +317,10 @@ class TrapSearch:
             assume(state, kind, self.side, self.node, 0, self.rules.two_faces)
             if symmetric:
                 assume(state, kind, 1 - self.side, self.node, 0, self.rules.two_faces)
+            if self.rules.place >= 0:
+                opcode = ROOT if symmetric else BRANCH + 2 * kind + self.side
+                place = varint(self.rules.buffer, self.rules.place, opcode)
+                self.rules.place = varint(self.rules.buffer, place, self.node)
             self.level = level + 1
             self.symmetric[level + 1] = 0
         return CLOSED
@@ -315,12 +328,13 @@ class TrapSearch:
     def run(self, quota):
         """Search for at most ``quota`` nodes; return why it stopped.
 
-        CLOSED: every level is refuted. FOUND: ``found`` is a solution. PAUSED: the quota is spent. GROW: the stack is
-        to be made longer.
+        CLOSED: every level is refuted. FOUND: ``found`` is a solution. PAUSED: the quota is spent. FLUSH: the
+        transcript is to be taken out of the buffer. GROW: the stack is to be made longer.
         """
+        room = self.rules.buffer.shape[0] - 32 * self.rules.n * self.rules.n - 4096
         granted = quota
         with cython.nogil:
-            why = self._search(granted)
+            why = self._search(granted, room)
         return why
 
 

@@ -1,7 +1,8 @@
 cimport cython
+from robustness.kernels.search_rules cimport varint
 from robustness.kernels.words cimport SOURCES, bit_of, count, first, number, word
 
-cdef int P, Q, F, T, Z, NORMAL
+cdef int P, Q, F, T, Z, NORMAL, PROPAGATE, EXCLUDE
 cdef word _ALL
 
 @cython.locals(w=number, bit=word)
@@ -11,7 +12,8 @@ cpdef void assume(word[:, ::1] state, number kind, number side, number node, bin
 cdef class TrapRules:
     cdef public word[:, ::1] hears
     cdef public number[::1] need, votes
-    cdef public number n, words, f
+    cdef public unsigned char[::1] buffer
+    cdef public number n, words, f, place
     cdef public bint two_faces, local, counting
 
     @cython.locals(

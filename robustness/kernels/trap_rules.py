@@ -63,11 +63,13 @@ except ImportError:
     from robustness.kernels import uncompiled as cython
 
 if not cython.compiled:
+    from robustness.kernels.search_rules import varint
     from robustness.kernels.words import bit_of, count, first
 
 __all__ = ["TrapRules"]
 
 P, Q, F, T, Z = layout.TRAP_P, layout.TRAP_Q, layout.TRAP_F, layout.TRAP_T, layout.TRAP_Z
+PROPAGATE, EXCLUDE = layout.PROPAGATE, layout.EXCLUDE
 NORMAL, _ALL = layout.NORMAL, np.uint64(0xFFFFFFFFFFFFFFFF)
 
 
@@ -86,6 +88,14 @@ class TrapRules:
         The kind of question.
     counting : bool
         Whether the rules *share* and *count* are on.
+
+    Attributes
+    ----------
+    buffer : array of uint8
+        Where the transcript is written; at least 32 n^2 bytes beyond ``place`` are free at every node.
+    place : int
+        Where the transcript goes on in ``buffer``; -1: none is kept. One is kept with ``counting`` only, since the
+        verifier applies *share* by itself.
     """
 
     def __init__(self, hears, need, f, two_faces, local, counting):
@@ -93,6 +103,8 @@ class TrapRules:
         self.two_faces, self.local, self.counting = two_faces, local, counting
         self.n, self.words = hears.shape
         self.votes = np.zeros(self.n, np.int64)
+        self.buffer = np.empty(1, np.uint8)
+        self.place = -1
 
     def _roles(self, state):
         """Apply *roles* to every word; return 0 for a contradiction, 2 when something changed, else 1."""
@@ -290,6 +302,10 @@ class TrapRules:
                         left_j = self._left(state, j) if self.local else left_i
                         if places + self._gain(left_i, left_j, x, y, z_i, z_j) >= self.need[i] + self.need[j]:
                             continue
+                        if self.place >= 0:
+                            self.place = varint(self.buffer, self.place, EXCLUDE + other)
+                            self.place = varint(self.buffer, self.place, j)
+                            self.place = varint(self.buffer, self.place, i)
                         if state[T + other, w] & bit_of(j):
                             return 0
                         state[P + other, w] &= ~bit_of(j)
@@ -340,7 +356,10 @@ class TrapRules:
         return total <= 0
 
     def propagate(self, state):
-        """Apply all rules until nothing changes; return False on contradiction."""
+        """Apply all rules until nothing changes; return False on contradiction.
+
+        The transcript receives every exclusion: EXCLUDE steps, PROPAGATE, EXCLUDE steps, and so on.
+        """
         while True:
             told = self._roles(state)
             if told == 0:
@@ -368,6 +387,8 @@ class TrapRules:
                     again |= told == 2
             if not again:
                 return True
+            if self.place >= 0:
+                self.place = varint(self.buffer, self.place, PROPAGATE)
 
 
 def assume(state, kind, side, node, true, two_faces):

@@ -4,8 +4,8 @@
 what                        the certificate proves                                               verified by
 ==========================  ===================================================================  =====================
 guaranteed, malicious       (f+1,f+1)-robust                                                     ``verify``
-guaranteed, all others      no attack of this kind on f: (2f+1)-robust, or, when the bound is    ``verify_tolerance``
-                            in all, (f+1)-robust without any f nodes
+guaranteed, all others      no attack of this kind on f: (2f+1)-robust, or the transcript of a   ``verify_tolerance``
+                            search that finds none
 guaranteed, over time       jointly (2f+1)-robust over few enough steps                          ``verify_joint``
 refuted, malicious          not (f+1,f+1)-robust                                                 ``verify``
 refuted, all others         the sets M, S1, S2 of the attack                                     ``verify_tolerance``
@@ -20,33 +20,34 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from itertools import combinations
-from math import comb
 
-from certificates import verify, verify_tolerance
-from certificates.tolerance import FORMAT
+from certificates import MalformedCertificate, verify, verify_tolerance
+from certificates.tolerance import FORMAT, FORMAT_WITH_REFUTATIONS
+from robustness import answers
 from robustness.decision.certification import certify, encode
+from robustness.decision.ladder import settle_quickly
+from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph
 from robustness.errors import InternalError
 from robustness.evidence import Pair
 from robustness.limits import Limits, Progress
 from robustness.results import Verdict
 from robustness.threat_models.results import AttackSets, ToleranceResult
+from robustness.traps import searching
 from robustness.traps.question import Question
 
 __all__ = ["ToleranceCertificates", "certify_promise", "certify_tolerance"]
 
-#: Beyond this many sets M a certificate of "no trap" is not worth its size.
-_MOST_REMOVALS = 5_000
+#: Beyond this many nodes the memory for a transcript is not worth trying.
+_MOST_NODES = 3_000
 
 
 @dataclass(frozen=True, slots=True)
 class ToleranceCertificates:
     """The certificates of one result; each has been verified by the kernel.
 
-    ``None`` for what is not claimed; where a limit stopped the work; and for what the kernel has no evidence for: no
-    attack on a network that is not (2f+1)-robust when the bound is local or there are too many sets M, and what holds
-    only over time.
+    ``None`` for what is not claimed; where a limit stopped the work; and for what holds only over time, for which the
+    kernel has no evidence.
     For a time-varying network ``guaranteed`` is a certificate of joint robustness, bound to
     :func:`robustness.time_varying.canonical_sequence`, and ``refuted`` is about the union of the steps.
     """
@@ -103,14 +104,14 @@ class _Work:
     limits: Limits
 
     def promise(self, question: Question) -> bytes | None:
-        f, two_faces, local = question
+        f = question.f
         if question == Question(f, two_faces=False):
             return self.robust(self.graph, f + 1, f + 1)
-        twice = self.robust(self.graph, 2 * f + 1)
-        if twice is not None:
-            faces, bound = 2 if two_faces else 1, "local" if local else "total"
-            return _tolerance(self.graph, f, faces, bound, "together", {"kind": "robust"}, twice)
-        return self.removals(f) if two_faces and not local else None
+        twice = answers.Question(self.graph, 2 * f + 1, 1)
+        settled = None if twice.r > largest_conceivable_r(self.graph.n) else settle_quickly(twice, self.limits)
+        if settled is not None and settled.verdict is Verdict.ROBUST:
+            return self.twice_robust(question) or self.refutation(question)
+        return self.refutation(question)
 
     def promise_over_time(self, result: ToleranceResult) -> bytes | None:
         """Return a certificate that the sequence is jointly (2f+1)-robust, over the smallest number of steps."""
@@ -130,18 +131,24 @@ class _Work:
         found = certify(graph, r, s, **self.limits.keywords())
         return found.certificate if found.verdict is Verdict.ROBUST else None
 
-    def removals(self, f: int) -> bytes | None:
-        """Return a certificate that the graph is (f+1)-robust without any f nodes."""
-        if comb(self.graph.n, f) > _MOST_REMOVALS:
+    def twice_robust(self, question: Question) -> bytes | None:
+        """Return a certificate of no solution because the graph is (2f+1)-robust."""
+        twice = self.robust(self.graph, 2 * question.f + 1)
+        return None if twice is None else _tolerance(self.graph, question, "together", {"kind": "robust"}, twice)
+
+    def refutation(self, question: Question) -> bytes | None:
+        """Return a certificate of no solution by the transcript of a search; None when a limit stopped it."""
+        if self.limits.expired() or self.graph.n > _MOST_NODES:
             return None
-        parts = []
-        for removed in combinations(range(self.graph.n), f):
-            part = self.robust(self.graph.without(frozenset(removed)), f + 1)
-            if part is None:
-                return None
-            parts.append(part)
-        evidence = {"kind": "removals", "lengths": [len(part) for part in parts]}
-        return _tolerance(self.graph, f, 2, "total", "together", evidence, b"".join(parts))
+        found = searching.decide(self.graph, question, self.limits, transcript=True)
+        if found.exists:
+            raise InternalError(f"a search finds {found.sets} where no attack was to exist: please report")
+        if found.transcript is None:
+            return None
+        try:
+            return _tolerance(self.graph, question, "together", {"kind": "refutation"}, found.transcript)
+        except MalformedCertificate:  # more work than the kernel takes upon itself
+            return None
 
 
 def _refutation(result: ToleranceResult) -> bytes | None:
@@ -159,16 +166,16 @@ def _refutation(result: ToleranceResult) -> bytes | None:
 
 def _apart(graph: Digraph, sets: AttackSets) -> bytes:
     named = {name: sorted(graph.ids(labels)) for name, labels in (("M", sets.M), ("S1", sets.S1), ("S2", sets.S2))}
-    bound = "local" if sets.local else "total"
-    return _tolerance(graph, sets.f, sets.faces, bound, "apart", {"kind": "sets", **named}, b"")
+    question = Question(sets.f, sets.faces == 2, sets.local)
+    return _tolerance(graph, question, "apart", {"kind": "sets", **named}, b"")
 
 
-def _tolerance(
-    graph: Digraph, f: int, faces: int, bound: str, verdict: str, evidence: Mapping[str, object], body: bytes
-) -> bytes:
+def _tolerance(graph: Digraph, question: Question, verdict: str, evidence: Mapping[str, object], body: bytes) -> bytes:
     """Return a tolerance certificate after the kernel has verified it."""
+    f, faces, bound = question.f, 2 if question.two_faces else 1, "local" if question.local else "total"
     claim = {"f": f, "faces": faces, "bound": bound, "verdict": verdict}
-    header = {"format": FORMAT, "graph": graph.sha256, "claim": claim, "evidence": evidence}
+    name = FORMAT_WITH_REFUTATIONS if evidence["kind"] == "refutation" else FORMAT
+    header = {"format": name, "graph": graph.sha256, "claim": claim, "evidence": evidence}
     certificate = json.dumps(header, separators=(",", ":")).encode("ascii") + b"\n" + body
     proved = verify_tolerance(graph.canonical_bytes(), certificate)
     if (proved.verdict, proved.f, proved.faces, proved.bound) != (verdict, f, faces, bound):

@@ -122,7 +122,8 @@ class Decisions:
             # For f = 0 all kinds are one: nodes of S_k hear neither a malicious node nor anybody else outside S_k.
             return self._violation(f, share)
         limits = self.limits.share(share)
-        exists, sets, name, stats = decide_trap(self.graph, question, limits, settle=self._settle)
+        answer = decide_trap(self.graph, question, limits, settle=self._settle)
+        exists, sets, name, stats = answer.exists, answer.sets, answer.decided_by, answer.stats
         how = str(stats.get("rule", "")) or f"complete search ({stats.get('nodes', 0)} nodes)"
         if exists is None:
             how = str(stats.get("reason", "a limit was reached"))

@@ -60,6 +60,8 @@ class TrapAnswer(NamedTuple):
     sets: Sets | None = None
     decided_by: str = ""
     stats: Mapping[str, Any] = MappingProxyType({})
+    #: The refutation of all solutions in the form of a certificate, where one was asked for.
+    transcript: bytes | None = None
 
     @classmethod
     def by_lemma(cls, sets: Sets | None, rule: str) -> TrapAnswer:

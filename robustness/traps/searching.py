@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from robustness.digraph import Digraph
 from robustness.errors import InternalError
-from robustness.kernels.layout import CLOSED, FOUND, GROW, NODES, PAUSED, PROBES, TRAP_P, TRAP_Q, TRAP_ROWS
+from robustness.kernels.layout import CLOSED, FLUSH, FOUND, GROW, NODES, PAUSED, PROBES, TRAP_P, TRAP_Q, TRAP_ROWS
 from robustness.limits import Limits, Progress
 from robustness.traps.question import Question, Sets, TrapAnswer
 
@@ -20,24 +20,34 @@ _LEVELS = 64
 
 
 def decide(
-    graph: Digraph, question: Question, limits: Limits, *, counting: bool = True, look_ahead: bool = True
+    graph: Digraph,
+    question: Question,
+    limits: Limits,
+    *,
+    counting: bool = True,
+    look_ahead: bool = True,
+    transcript: bool = False,
 ) -> TrapAnswer:
     """Return whether a solution exists (None past the deadline), one, and counters.
 
     Exponential in the worst case. ``counting`` and ``look_ahead`` are switches for what they are named after; the
-    answer does not depend on them. Two searches that differ in when M is drawn
+    answer does not depend on them. With ``transcript`` the answer that there is no solution carries the refutation that
+    :func:`certificates.verify_tolerance` replays; it needs ``counting``. Two searches that differ in when M is drawn
     (:mod:`robustness.kernels.trap_loop`) take turns; the first to end decides.
     """
     hears = graph.in_words
     need = np.maximum(graph.in_degrees - question.f, 0).astype(np.int64)
-    runs = [_Run(hears, need, question, counting, look_ahead, eager) for eager in (False, True)[: 1 + look_ahead]]
+    runs = [
+        _Run(hears, need, question, counting, look_ahead, eager, transcript)
+        for eager in (False, True)[: 1 + look_ahead]
+    ]
     told = time.monotonic()
     while True:
         for run in runs:
             run.advance()
             stats = {"nodes": sum(each.nodes for each in runs), "probes": sum(each.probes for each in runs)}
             if run.is_closed:
-                return TrapAnswer(False, stats=stats)
+                return TrapAnswer(False, stats=stats, transcript=b"".join(run.transcript) if transcript else None)
             if run.solution is not None:
                 return TrapAnswer(True, run.solution, stats=stats)
             if limits.expired():
@@ -58,6 +68,7 @@ class _Run:
         counting: bool,
         look_ahead: bool,
         eager: bool,
+        transcript: bool,
     ) -> None:
         from robustness.kernels.trap_loop import TrapSearch
         from robustness.kernels.trap_rules import TrapRules
@@ -65,6 +76,8 @@ class _Run:
         n, words = hears.shape
         self._question = question
         rules = TrapRules(hears, need, min(question.f, n), question.two_faces, question.local, counting)
+        if transcript:
+            rules.buffer, rules.place = np.empty(32 * n * n + 4096 + 2**16, np.uint8), 0
         self._search = TrapSearch(rules, look_ahead, eager)
         self._search.stack = np.zeros((_LEVELS, TRAP_ROWS, words), np.uint64)
         self._search.symmetric = np.zeros(_LEVELS, np.int64)
@@ -74,6 +87,8 @@ class _Run:
         # first. About a fiftieth of a second.
         self._quota = max(1, 20_000_000 // (20_000 + 4 * n * n * words))
         self.is_closed = False
+        #: The pieces of the transcript, if one is kept.
+        self.transcript: list[bytes] = []
         self.solution: Sets | None = None
 
     @property
@@ -90,6 +105,9 @@ class _Run:
         """Search for one turn; ``is_closed`` or ``solution`` tells when it is over."""
         search = self._search
         why = search.run(self._quota)
+        if search.rules.place >= 0 and why in (CLOSED, FLUSH):
+            self.transcript.append(np.asarray(search.rules.buffer)[: search.rules.place].tobytes())
+            search.rules.place = 0
         if why == CLOSED:
             self.is_closed = True
         elif why == FOUND:
@@ -98,7 +116,7 @@ class _Run:
             stack, symmetric = np.asarray(search.stack), np.asarray(search.symmetric)
             search.stack = np.concatenate([stack, np.zeros_like(stack)])
             search.symmetric = np.concatenate([symmetric, np.zeros_like(symmetric)])
-        elif why != PAUSED:
+        elif why not in (PAUSED, FLUSH):
             raise InternalError(f"the trap search stopped with status {why}: please report")
 
 

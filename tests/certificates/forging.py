@@ -13,7 +13,8 @@ from functools import cache
 
 from certificates import CertificateError, VerifiedClaim, verify
 from certificates.graph import decode_graph
-from certificates.rules import Contradiction, Question, State, excludes, settle
+from certificates.masks import Contradiction
+from certificates.rules import Question, State, excludes, settle
 from robustness import Digraph
 from robustness.decision.algorithms import subset_search
 from robustness.limits import Limits

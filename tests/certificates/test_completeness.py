@@ -8,7 +8,7 @@ import random
 import networkx as nx
 import pytest
 
-from certificates import VerifiedClaim, rules, verify
+from certificates import VerifiedClaim, masks, verify
 from robustness import Digraph
 from robustness.decision.certification import certify
 from robustness.results import Verdict
@@ -137,7 +137,7 @@ def test_larger_graphs(s: int) -> None:
 
 def test_a_proof_beyond_the_limits_of_the_kernel_certifies_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """Then the answer is undecided, for want of evidence, and says why."""
-    monkeypatch.setattr(rules, "MAX_LOOKS", 3)
+    monkeypatch.setattr(masks, "MAX_LOOKS", 3)
     result = certify(nx.wheel_graph(5), 2, evidence="refutation")
     assert (result.verdict, result.certificate) == (Verdict.UNDECIDED, None)
     assert "beyond what the kernel checks" in result.stats["reason"]

@@ -14,11 +14,10 @@ from certificates import (
     MalformedGraph,
     Misuse,
     RejectedCertificate,
+    VerifiedClaim,
     envelope,
     graph,
-    refutation,
-    rules,
-    verification,
+    masks,
     verify,
 )
 from certificates.graph import decode_graph, label_key
@@ -183,19 +182,19 @@ class TestHeader:
             verify(empty.canonical_bytes(), certificate(empty, 1, 1, evidence={"kind": "degree"}))
 
     def test_size_limits(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr(verification, "MAX_CERTIFICATE_BYTES", len(PROOF) - 1)
+        monkeypatch.setattr(envelope, "MAX_CERTIFICATE_BYTES", len(PROOF) - 1)
         with pytest.raises(MalformedCertificate, match="at most"):
             verify(CANONICAL, PROOF)
-        monkeypatch.setattr(verification, "MAX_CERTIFICATE_BYTES", len(PROOF))
+        monkeypatch.setattr(envelope, "MAX_CERTIFICATE_BYTES", len(PROOF))
         monkeypatch.setattr(envelope, "MAX_HEADER_BYTES", PROOF.index(b"\n"))
         with pytest.raises(MalformedCertificate, match="one line"):
             verify(CANONICAL, PROOF)
         monkeypatch.setattr(envelope, "MAX_HEADER_BYTES", len(PROOF))
-        monkeypatch.setattr(refutation, "MAX_NODES", 4)
+        monkeypatch.setattr(masks, "MAX_NODES", 4)
         with pytest.raises(MalformedCertificate, match="at most 4 nodes"):
             verify(CANONICAL, PROOF)
-        monkeypatch.setattr(refutation, "MAX_NODES", 5)
-        monkeypatch.setattr(rules, "MAX_LOOKS", 10)
+        monkeypatch.setattr(masks, "MAX_NODES", 5)
+        monkeypatch.setattr(masks, "MAX_LOOKS", 10)
         with pytest.raises(MalformedCertificate, match="at most 10 looks"):
             verify(CANONICAL, PROOF)
         monkeypatch.setattr(graph, "MAX_GRAPH_BYTES", len(CANONICAL) - 1)
@@ -346,7 +345,7 @@ def test_the_tree_of_errors() -> None:
     assert issubclass(RejectedCertificate, ValueError)
 
 
-def assert_claims_at_most(header: object, body: bytes, claim: verification.VerifiedClaim) -> None:
+def assert_claims_at_most(header: object, body: bytes, claim: VerifiedClaim) -> None:
     """Whatever a changed header still proves is true of the wheel: (2,5)-robust, not 3-robust."""
     try:
         found = verify(CANONICAL, bound(header, body))

@@ -17,6 +17,7 @@ from certificates import (
     MalformedGraph,
     Misuse,
     RejectedCertificate,
+    envelope,
     joint,
     verify,
     verify_joint,
@@ -368,7 +369,7 @@ def test_limits(monkeypatch: pytest.MonkeyPatch) -> None:
         ("MAX_CERTIFICATE_BYTES", "at most 4 bytes"),
     ):
         with monkeypatch.context() as patch:
-            patch.setattr(joint, name, 4)
+            patch.setattr(envelope if name == "MAX_CERTIFICATE_BYTES" else joint, name, 4)
             with pytest.raises(MalformedCertificate, match=message):
                 verify_joint(DATA, ROBUST)
 

@@ -14,7 +14,8 @@ import networkx as nx
 import pytest
 
 from certificates.graph import decode_graph
-from certificates.rules import Contradiction, Question, State, _least_exempt, excludes, settle
+from certificates.masks import Contradiction
+from certificates.rules import Question, State, _least_exempt, excludes, settle
 from robustness import Digraph
 
 

@@ -39,6 +39,26 @@ def test_committed_samples(path: Path) -> None:
     check(path)
 
 
+#: What docs/certificate-format.md says of the samples that are rejected.
+CODES = {
+    "another-graph-of-the-same-degrees": "other-subject",
+    "the-proof-of-a-sibling": "refutation",
+    "r-beyond-half": "beyond-half",
+    "degree-too-small": "degree",
+    "growth-too-thin": "growth",
+    "derivation-that-skips-weaken": "derivation",
+    "an-empty-set": "violation",
+}
+
+
+@pytest.mark.parametrize(("name", "code"), CODES.items())
+def test_a_rejection_says_by_a_code_which_part_does_not_hold(name: str, code: str) -> None:
+    path = HERE / "rejected" / f"{name}.cert"
+    with pytest.raises(RejectedCertificate) as caught:
+        verify(path.with_suffix(".graph").read_bytes(), path.read_bytes())
+    assert caught.value.code == code
+
+
 def test_the_script_writes_what_is_committed(tmp_path: Path) -> None:
     write(tmp_path)
     written = sorted(tmp_path.glob("*/*"))

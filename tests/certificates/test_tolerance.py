@@ -209,7 +209,7 @@ class TestMalformed:
             verify_tolerance(WHEEL.canonical_bytes(), b"{}")
 
     def test_too_long(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr("certificates.tolerance.MAX_CERTIFICATE_BYTES", 10)
+        monkeypatch.setattr("certificates.envelope.MAX_CERTIFICATE_BYTES", 10)
         with pytest.raises(MalformedCertificate, match="at most 10 bytes"):
             verify_tolerance(WHEEL.canonical_bytes(), make(WHEEL, claim(), TRAP))
 

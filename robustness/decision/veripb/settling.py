@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from certificates.rules import Contradiction
+from certificates.masks import Contradiction
 from robustness.decision.veripb.inequalities import Model, negated
 from robustness.decision.veripb.proof import Proof
 

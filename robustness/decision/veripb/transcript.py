@@ -26,8 +26,9 @@ whether it holds the checker finds out.
 
 from __future__ import annotations
 
-from certificates.refutation import BRANCH, EXCLUDE, PROPAGATE, ROOT, SATISFIED
-from certificates.rules import Contradiction
+from certificates.masks import Contradiction
+from certificates.refutation import SATISFIED
+from certificates.walk import BRANCH, EXCLUDE, PROPAGATE, ROOT
 from robustness.decision.veripb.inequalities import Model
 from robustness.decision.veripb.proof import Proof
 from robustness.decision.veripb.settling import Knowledge, Settling, ids
