@@ -3,7 +3,7 @@
 ==================================  ========================================================================
 suffix                              format
 ==================================  ========================================================================
-``.json``                           node-link JSON, which keeps everything, and JSON of other programs
+``.json``, ``.graph``               node-link JSON, which keeps everything, and JSON of other programs
 ``.graphml``, ``.gexf``, ``.xml``   GraphML, GEXF and the XML of SNDlib; labels become text
 ``.gml``                            GML; labels become text
 ``.edgelist``, ``.txt``, ...        links ``u v``, lists of neighbours, or a matrix; labels become text
@@ -139,7 +139,7 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
     {
         suffix: FORMAT_NAMES[name]
         for name, suffixes in (
-            ("json", ".json"), ("graphml", ".graphml"), ("gexf", ".gexf"), ("xml", ".xml"), ("gml", ".gml"),
+            ("json", ".json .graph"), ("graphml", ".graphml"), ("gexf", ".gexf"), ("xml", ".xml"), ("gml", ".gml"),
             ("text", ".edgelist .txt .edges .el .ncol .dat"), ("csv", ".csv .tsv"), ("adjacency-list", ".adjlist"),
             ("npy", ".npy"), ("npz", ".npz"), ("mat", ".mat"), ("matrix-market", ".mtx"), ("dot", ".dot .gv"),
             ("pajek", ".net .paj"), ("graph6", ".g6"), ("sparse6", ".s6"), ("digraph6", ".d6"),
