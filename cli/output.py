@@ -167,14 +167,14 @@ def graph_document(graph: Digraph) -> dict[str, Any]:
 
 
 def set_document(labels: Iterable[Label]) -> list[Label]:
-    """Return a set of labels for JSON: in canonical order, tuples as lists."""
-    from certificates.graph import label_key
+    """Return a set of labels for JSON: in natural order, ``n2`` before ``n10``, tuples as lists."""
+    from robustness.natural_order import in_natural_order
 
-    return sorted(labels, key=label_key)
+    return in_natural_order(labels)
 
 
 def set_text(labels: Iterable[Label], *, whole: bool = False) -> str:
-    """Return a set of labels as text, in canonical order; a long one is cut unless ``whole``."""
+    """Return a set of labels as text, in natural order; a long one is cut unless ``whole``."""
     from robustness.showing import listed_in_words
 
     return listed_in_words(set_document(labels), None if whole else _LABELS_SHOWN, label_text)

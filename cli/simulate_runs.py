@@ -160,7 +160,9 @@ def node_named(graph: Digraph, text: str) -> Label:
     for candidate in (label, text):
         if type(candidate) in (int, str, tuple) and candidate in graph.index:
             return candidate
-    raise InvalidParameter(f"a node is named by its label, but {text!r} is none: list them with 'check -v'")
+    raise InvalidParameter(
+        f"a node is named by its label, but {text!r} is none: the nodes are {set_text(graph.labels)}"
+    )
 
 
 def _worst(scenario: Scenario, starts: list[Start], query: Query) -> tuple[Scenario, list[Start]]:

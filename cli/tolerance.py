@@ -28,6 +28,12 @@ __all__ = ["SCHEMA", "command"]
 
 SCHEMA = "robustness/tolerance/1"
 
+#: Up to this many nodes lemmas are asked, in milliseconds, about the models that a limit or Ctrl-C left unfinished.
+_LEMMAS_NODES = 256
+
+#: A time limit that is over at once: what is known without a search.
+_MOMENT = 1e-9
+
 
 @dataclass(frozen=True, slots=True)
 class Report:
@@ -132,6 +138,7 @@ def command(
 
         require_different_files([source], [output / "graph.json", output / "sequence.json"])
     network, graph = _load(source, tau, period)
+    _prepare()
     started = time.perf_counter()
     with ProgressLine(console) as line:
         finished: list[ToleranceResult] = []
@@ -144,10 +151,9 @@ def command(
             report = query.wait_for(work, line)
         except (Overrun, KeyboardInterrupt) as stop:
             is_interrupted = isinstance(stop, KeyboardInterrupt)
-            if is_interrupted and not finished:
-                raise
             why = "interrupted" if is_interrupted else "the time limit was reached"
-            report = _stopped(network, graph, model, tau, required, time.perf_counter() - started, finished, why)
+            table = _stopped(network, graph, model, (tau, delay, gap), finished, why)
+            report = Report(graph, table, dict.fromkeys(table), required, time.perf_counter() - started)
     if output is not None:
         _write_evidence(console, report, output, query)
     if query.as_json:
@@ -155,7 +161,9 @@ def command(
     else:
         console.answer(_lines(report, source, console))
     if is_interrupted:
-        console.error(f"interrupted: what is printed of {len(finished)} models holds, nothing else is claimed")
+        console.error(
+            f"interrupted: {len(finished)} models were finished; what is printed holds, nothing else is claimed"
+        )
         ctx.exit(ExitCode.INTERRUPTED)
     ctx.exit(report.exit_code())
 
@@ -232,33 +240,42 @@ def _write_evidence(console: Console, report: Report, folder: Path, query: Query
             replace_file(folder / f"{result.model}-attack.json", text.encode())
 
 
+def _prepare() -> None:
+    """Import what the work needs: the user's seconds are for the network, not for reading program files."""
+    import robustness.threat_models.confirmation
+    import robustness.traps.searching  # noqa: F401
+
+
 def _stopped(
     network: Digraph | TimeVaryingGraph,
     graph: Digraph,
     model: str | None,
-    tau: int | None,
-    required: int | None,
-    seconds: float,
+    ages: tuple[int | None, int | None, int | None],
     finished: list[ToleranceResult],
     why: str,
-) -> Report:
-    """Return the report of work that was stopped: what was finished holds, of the rest nothing is claimed."""
+) -> ToleranceTable:
+    """Return what work that was stopped had finished; of the other models what lemmas tell, which takes no search."""
     from robustness.threat_models.models import THREAT_MODELS
     from robustness.threat_models.over_time import MODELS_OVER_TIME
     from robustness.threat_models.results import Reason, Standing, ToleranceResult, ToleranceTable
     from robustness.time_varying import TimeVaryingGraph
 
+    tau, delay, gap = ages
     reason = Reason(Standing.UNDECIDED, 0, "nothing was decided", f"none: {why}", "none")
     sequence = network if isinstance(network, TimeVaryingGraph) else None
     names = (model,) if model is not None else THREAT_MODEL_NAMES if sequence is None else MODELS_OVER_TIME
     known = {result.model: result for result in finished}
-    results = tuple(
-        known[name]
-        if name in known
-        else ToleranceResult(graph, THREAT_MODELS[name], -1, None, (reason,), sequence=sequence, tau=tau)
+    if sequence is None and graph.n <= _LEMMAS_NODES:
+        from robustness.threat_models import tolerance
+
+        known |= {name: tolerance(graph, name, time_limit=_MOMENT) for name in names if name not in known}
+    rest = {
+        name: ToleranceResult(
+            graph, THREAT_MODELS[name], -1, None, (reason,), sequence=sequence, tau=tau, delay=delay, gap=gap
+        )
         for name in names
-    )
-    return Report(graph, ToleranceTable(graph, results), dict.fromkeys(names), required, seconds)
+    }
+    return ToleranceTable(graph, tuple(known.get(name, rest[name]) for name in names))
 
 
 def _lines(report: Report, source: str, console: Console) -> Iterator[str]:

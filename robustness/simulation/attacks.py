@@ -24,6 +24,7 @@ from robustness.definitions import is_violation, r_reachable_ids
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.json_labels import from_json
+from robustness.natural_order import in_natural_order
 from robustness.showing import Shown, listed_in_words
 from robustness.simulation.adversaries import Adversary, Alternating, Constant
 from robustness.simulation.fault_models import fault_model_named, require_fault_model
@@ -179,7 +180,7 @@ class Attack(Shown):
         return made
 
     def _ordered(self, labels: Iterable[Label]) -> tuple[Label, ...]:
-        return tuple(self.graph.labels[i] for i in sorted(self.graph.ids(labels)))
+        return tuple(in_natural_order(self.graph.labels_of(self.graph.ids(labels))))
 
 
 def attack_from_violation(

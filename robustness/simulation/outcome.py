@@ -13,6 +13,7 @@ import numpy.typing as npt
 from certificates.graph import Label
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter, MissingExtra
+from robustness.natural_order import in_natural_order
 from robustness.showing import ShownOverTime, labels_in_words
 from robustness.simulation.contraction import Contraction
 from robustness.simulation.dynamics import Floats, to_absolute
@@ -188,7 +189,7 @@ class Outcome(ShownOverTime):
             "contraction": None if self.contraction is None else self.contraction._asdict(),
             "safe": self.safe,
             "promise": self.promise,
-            "groups": [{"value": value, "nodes": list(labels)} for value, labels in self.groups],
+            "groups": [{"value": value, "nodes": in_natural_order(labels)} for value, labels in self.groups],
         }
 
 

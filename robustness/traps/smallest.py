@@ -16,6 +16,7 @@ from robustness.decision.front import check_within
 from robustness.digraph import GraphLike, as_digraph
 from robustness.errors import InvalidParameter, Undecided
 from robustness.limits import Limits, Progress
+from robustness.natural_order import in_natural_order
 from robustness.results import Verdict
 from robustness.traps.question import Question, Sets, solves
 
@@ -31,8 +32,8 @@ class Trap:
     S2: frozenset[Label]
 
     def as_dict(self) -> dict[str, list[Label]]:
-        """Return the sets as sorted lists, as kept in ``G.graph["trap"]``."""
-        return {name: sorted(getattr(self, name), key=repr) for name in ("M", "S1", "S2")}
+        """Return the sets as lists in natural order, as kept in ``G.graph["trap"]``."""
+        return {name: in_natural_order(getattr(self, name)) for name in ("M", "S1", "S2")}
 
 
 def is_trap(G: GraphLike, f: int, M: Iterable[Hashable], S1: Iterable[Hashable], S2: Iterable[Hashable]) -> bool:

@@ -167,14 +167,36 @@ class TestGate:
         found = json.loads(CliRunner().invoke(robustness, [*asked, "--require", "1", "--json"]).stdout)
         assert found["require"] == {"f": 1, "verdict": "open"}
 
-    def test_work_that_overruns_claims_nothing(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr("cli.interruption.GRACE", 0.0)
-        monkeypatch.setattr("cli.tolerance._examine", lambda *_: time.sleep(1))
-        outcome = tolerance("--require", "0", "--timeout", "0.05")
+    @pytest.mark.parametrize("stop", [Overrun, KeyboardInterrupt])
+    def test_work_that_is_stopped_keeps_what_lemmas_prove(
+        self, stop: type[BaseException], monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """Before any model was finished, and for a model that lemmas do not decide, bounds are told."""
+
+        def stopped(*_: object) -> None:
+            raise stop
+
+        monkeypatch.setattr("cli.tolerance._examine", stopped)
+        graph = encode_topology(nx.gnp_random_graph(60, 0.5, seed=1))
+        outcome = tolerance("--require", "4", "--timeout", "9", "--json", graph=graph)
+        assert outcome.exit_code == (ExitCode.UNDECIDED if stop is Overrun else ExitCode.INTERRUPTED)
+        models = {model["model"]: model for model in json.loads(outcome.stdout)["models"]}
+        assert set(models) == set(MODELS)
+        assert all(model["guaranteed"] >= 0 and model["refuted"] is not None for model in models.values())
+        assert models["malicious"]["guaranteed"] > 2
+
+    def test_work_that_is_stopped_over_time_claims_nothing(
+        self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    ) -> None:
+        def overruns(*_: object) -> None:
+            raise Overrun
+
+        monkeypatch.setattr("cli.tolerance._examine", overruns)
+        (tmp_path / "links.json").write_text(json.dumps({"nodes": [0, 1], "period": None, "steps": [[[0, 1]]]}))
+        asked = ["tolerance", str(tmp_path / "links.json"), "--tau", "1", "--require", "0"]
+        outcome = CliRunner().invoke(robustness, asked)
         assert outcome.exit_code == ExitCode.UNDECIDED
-        assert outcome.stdout.startswith("undecided:")
-        assert "f = 0 under" in outcome.stdout
-        assert "time limit came first" in outcome.stdout
+        assert outcome.stdout.startswith("undecided: f = 0 under")
         assert "nothing is guaranteed within the limit" in outcome.stdout
 
     def test_an_attack_that_does_not_split_is_a_bug_not_a_verdict(self, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -263,8 +285,9 @@ def test_ctrl_c(tmp_path: Path) -> None:
     time.sleep(2.5)
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=10)
-    assert (process.returncode, out) == (ExitCode.INTERRUPTED, "")
-    assert "interrupted: nothing is claimed" in err
+    assert process.returncode == ExitCode.INTERRUPTED
+    # An interrupt before the work began, on a busy machine, finds nothing to tell.
+    assert ("byzantine                 0" in out and "nothing else is claimed" in err) or "nothing is claimed" in err
 
 
 def test_summary_is_the_library_s(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -275,11 +298,12 @@ def test_summary_is_the_library_s(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("stop", [KeyboardInterrupt, Overrun])
 def test_what_was_decided_before_a_stop_is_kept(stop: type[BaseException], monkeypatch: pytest.MonkeyPatch) -> None:
     judged: list[str] = []
+    stops = [stop]
     judge = front.judge
 
     def stubborn(decisions: object, threat: ThreatModel) -> ToleranceResult:
-        if len(judged) == 2:
-            raise stop
+        if len(judged) == 2 and stops:
+            raise stops.pop()
         judged.append(threat.name)
         return judge(decisions, threat)  # type: ignore[arg-type]
 
@@ -288,6 +312,6 @@ def test_what_was_decided_before_a_stop_is_kept(stop: type[BaseException], monke
     outcome = CliRunner().invoke(robustness, ["tolerance", "-", "--json"], input=graph)
     found = {model["model"]: model for model in json.loads(outcome.stdout)["models"]}
     assert outcome.exit_code == (130 if stop is KeyboardInterrupt else 30)
-    assert [found[name]["guaranteed"] for name in judged] == [1, 1]
+    assert [found[name]["guaranteed"] for name in judged[:2]] == [1, 1]
     assert len(found) == 6
-    assert all(model["guaranteed"] == -1 for name, model in found.items() if name not in judged)
+    assert sorted(judged) == sorted(found), "each model is judged once: finished before, or by lemmas after the stop"
