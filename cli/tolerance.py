@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -49,7 +49,7 @@ class Report:
         """Return what is known about the required f in the worst of the models, or None when none was required."""
         if self.required is None:
             return None
-        standings = {result.standing(self.required).value for result in self.table.results}
+        standings = {result.standing_of(self.required).value for result in self.table.results}
         return next(each for each in ("refuted", "undecided", "open", "guaranteed") if each in standings)
 
     def exit_code(self) -> ExitCode:
@@ -86,12 +86,13 @@ class Report:
     metavar="T",
     help="GRAPH is a sequence as for 'joint'; values are used up to T steps after they were sent, also of links gone.",
 )
+@click.option("--T", "period_T", type=float, metavar="SECONDS", help="The sampling period of second-order vehicles.")
+@click.option("--alpha", type=float, metavar="GAIN", help="With --T: their gain; 1.5/T unless given.")
+@click.option("--sigma", type=float, metavar="S", help="With --T: kept weights add up to at most S; 1 unless given.")
 @click.option(
-    "--delay", type=click.IntRange(min=1), metavar="B", help="With --tau: delays are at most B; T unless given."
+    "--delay", type=click.IntRange(min=0), metavar="B", help="Delays are at most B; with --tau T unless given."
 )
-@click.option(
-    "--gap", type=click.IntRange(min=1), metavar="G", help="With --tau: updates at most G steps apart; 1 unless given."
-)
+@click.option("--gap", type=click.IntRange(min=1), metavar="G", help="Updates at most G steps apart; with --tau 1.")
 @click.option("--period", type=click.IntRange(min=1), metavar="P", help="With --tau: the last P steps repeat for ever.")
 @click.option(
     "-o", "--output", type=click.Path(file_okay=False, path_type=Path), metavar="DIR", help="Write certificates there."
@@ -105,6 +106,9 @@ def command(
     model: str | None,
     required: int | None,
     tau: int | None,
+    period_T: float | None,
+    alpha: float | None,
+    sigma: float | None,
     delay: int | None,
     gap: int | None,
     period: int | None,
@@ -124,13 +128,18 @@ def command(
     limit came first, "open" when theory does not decide it from what is given, such as a trace that ends. Without: 0,
     or 30 when something is undecided or open.
 
+    With --T and --alpha, --sigma, --delay or --gap one line says whether the theorems apply to these vehicles and, if
+    not, what would make them apply; --require then counts only what applies.
+
     With -o, DIR/graph.json is the canonical graph, DIR/MODEL-guaranteed-F.cert and DIR/MODEL-refuted-F.cert are
     certificates, and DIR/MODEL-attack.json is what 'simulate --attack' reads. With --tau, guaranteed
     certificates are about DIR/sequence.json, all else is about the union of the steps, DIR/graph.json.
     """
-    for option, value in (("--period", period), ("--delay", delay), ("--gap", gap)):
-        if tau is None and value is not None:
-            raise click.UsageError(f"{option} belongs to a sequence: give --tau as well.")
+    if tau is None and period is not None:
+        raise click.UsageError("--period belongs to a sequence: give --tau as well.")
+    if tau is not None and delay == 0:
+        raise click.UsageError("over time delays are at least 1: give --delay 1 or more.")
+    vehicles = {"T": period_T, "alpha": alpha, "sigma": sigma, "delay": delay, "gap": gap}
     if tau is not None and model not in (None, "delayed", "delayed-local"):
         raise click.UsageError(f"theory says nothing about {model} over time: with --tau, delayed or delayed-local.")
     if output is not None:
@@ -144,7 +153,7 @@ def command(
         finished: list[ToleranceResult] = []
 
         def work() -> Report:
-            return _examine(network, graph, model, (tau, delay, gap), required, query, line, finished.append)
+            return _examine(network, graph, model, tau, vehicles, required, query, line, finished.append)
 
         is_interrupted = False
         try:
@@ -183,7 +192,8 @@ def _examine(
     network: Digraph | TimeVaryingGraph,
     graph: Digraph,
     model: str | None,
-    ages: tuple[int | None, int | None, int | None],
+    tau: int | None,
+    vehicles: Mapping[str, Any],
     required: int | None,
     query: Query,
     line: ProgressLine,
@@ -195,8 +205,7 @@ def _examine(
     from robustness.threat_models.results import ToleranceTable
 
     started = time.perf_counter()
-    tau, delay, gap = ages
-    found = tolerance(network, model, tau=tau, delay=delay, gap=gap, on_result=on_result, **query.effort(line))
+    found = tolerance(network, model, tau=tau, **vehicles, on_result=on_result, **query.effort(line))
     table = found if isinstance(found, ToleranceTable) else ToleranceTable(graph, (found,))
     # Playing an attack is a second look at evidence that was checked before; past the user's limit it is left out.
     ends = math.inf if query.timeout is None else started + query.timeout
@@ -324,6 +333,9 @@ def _gate(report: Report) -> str:
         "undecided": "the time limit came first, so more time may tell",
         "open": "theory does not decide it from what is given, however long one looks",
     }[verdict]
+    f = report.required or 0
+    if verdict == "open" and any(each.standing(f) is not each.standing_of(f) for each in report.table.results):
+        what = "what is known does not apply to these vehicles"
     return f"{click.style(verdict + ':', fg=color, bold=True)} f = {report.required} under {models}: {what}"
 
 

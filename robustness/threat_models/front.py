@@ -12,6 +12,7 @@ from robustness.limits import Limits, Progress
 from robustness.threat_models.decisions import Decisions
 from robustness.threat_models.models import THREAT_MODELS, threat_model_named
 from robustness.threat_models.over_time import MODELS_OVER_TIME, JointDecisions, over_time
+from robustness.threat_models.parameters import Parameters
 from robustness.threat_models.results import ToleranceResult, ToleranceTable
 from robustness.threat_models.verdicts import judge
 from robustness.time_varying import TimeVaryingGraph
@@ -28,6 +29,9 @@ def tolerance(
     tau: int | None = None,
     delay: int | None = None,
     gap: int | None = None,
+    T: float | None = None,
+    alpha: float | None = None,
+    sigma: float | None = None,
     time_limit: float | None = None,
     jobs: int = 1,
     seed: int = 0,
@@ -44,6 +48,9 @@ def tolerance(
     tau: int | None = None,
     delay: int | None = None,
     gap: int | None = None,
+    T: float | None = None,
+    alpha: float | None = None,
+    sigma: float | None = None,
     time_limit: float | None = None,
     jobs: int = 1,
     seed: int = 0,
@@ -60,6 +67,9 @@ def tolerance(
     tau: int | None = None,
     delay: int | None = None,
     gap: int | None = None,
+    T: float | None = None,
+    alpha: float | None = None,
+    sigma: float | None = None,
     time_limit: float | None = None,
     jobs: int = 1,
     seed: int = 0,
@@ -83,8 +93,13 @@ def tolerance(
         For a time-varying network, and only there, at least 1: how many steps after it was sent a value is still used,
         also through a link that has gone.
     delay, gap : int, optional
-        With tau: the bound on delays, at least 1 (tau unless given), and the longest gap between two updates of a
-        vehicle (1 unless given). A value may not be late before it is used: ``delay + gap - 1 <= tau``.
+        The bound on delays and the longest gap between two updates of a vehicle. With tau they are part of the
+        question: at least 1 (tau unless given; 1 unless given), and a value may not be late before it is used:
+        ``delay + gap - 1 <= tau``. On a fixed network the answer is the same for all of them.
+    T, alpha, sigma : float, optional
+        The sampling period, the gain (``1.5 / T`` unless given) and a bound on the sum of kept weights (1 unless given)
+        of second-order vehicles. With these, ``delay`` and ``gap``, ``result.parameters`` says whether what is known
+        applies to them, and what would make it apply.
     time_limit : float, optional
         Wall-clock seconds in all; what is not decided by then is UNDECIDED, and nothing is claimed about it.
     jobs, seed, progress
@@ -122,10 +137,11 @@ def tolerance(
     """
     limits = Limits.of(time_limit, jobs, seed, progress)
     decisions, names = _questions(G, model, (tau, delay, gap), limits)
+    parameters = Parameters.of(T, alpha, sigma, delay, gap)
     over = over_time if isinstance(decisions, JointDecisions) else threat_model_named
     results: list[ToleranceResult] = []
     for name in names:
-        result = judge(decisions, over(name))
+        result = replace(judge(decisions, over(name)), parameters=parameters)
         if isinstance(decisions, JointDecisions):
             result = replace(
                 result,
@@ -146,11 +162,8 @@ def _questions(
 ) -> tuple[Decisions, tuple[str, ...]]:
     """Return what decides about G, and the threat models to decide about."""
     if not isinstance(G, TimeVaryingGraph):
-        for name, value in zip(("tau", "delay", "gap"), ages, strict=True):
-            if value is not None:
-                raise InvalidParameter(
-                    f"{name} belongs to a time-varying network: leave it out, or pass a TimeVaryingGraph"
-                )
+        if ages[0] is not None:
+            raise InvalidParameter("tau belongs to a time-varying network: leave it out, or pass a TimeVaryingGraph")
         names = tuple(THREAT_MODELS) if model is None else (threat_model_named(model).name,)
         return Decisions(as_digraph(G), limits), names
     tau, delay, gap = ages

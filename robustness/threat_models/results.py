@@ -12,6 +12,7 @@ from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
 from robustness.showing import Shown
 from robustness.threat_models.models import ThreatModel
+from robustness.threat_models.parameters import Parameters
 
 if TYPE_CHECKING:
     from robustness.simulation.attacks import Attack
@@ -101,6 +102,8 @@ class ToleranceResult(Shown):
         With a sequence: the bound on delays, and how far updates may lie apart.
     longest_window : int or None
         With a sequence: how many steps the windows may have whose joint robustness promises.
+    parameters : Parameters or None
+        The vehicles that were asked about: ``parameters.promise_gap(threat)`` says whether the promise applies to them.
     """
 
     graph: Digraph = field(repr=False)
@@ -114,6 +117,7 @@ class ToleranceResult(Shown):
     delay: int | None = None
     gap: int | None = None
     longest_window: int | None = None
+    parameters: Parameters | None = None
 
     def __bool__(self) -> bool:
         raise TypeError("a ToleranceResult has no truth value: compare .guaranteed, .refuted or .standing(f)")
@@ -144,6 +148,20 @@ class ToleranceResult(Shown):
             return Standing.REFUTED
         is_open = any(reason.f == f and reason.standing is Standing.OPEN for reason in self.reasons)
         return Standing.OPEN if is_open else Standing.UNDECIDED
+
+    def standing_of(self, f: int) -> Standing:
+        """Return what is known about f for the parameters that were asked about; OPEN where nothing applies.
+
+        Raises
+        ------
+        InvalidParameter
+            For a negative f.
+        """
+        standing, given = self.standing(f), self.parameters
+        if given is None or self.graph.n < 2:
+            return standing
+        gaps = {Standing.GUARANTEED: given.promise_gap, Standing.REFUTED: given.attack_gap}
+        return Standing.OPEN if standing in gaps and gaps[standing](self.threat) is not None else standing
 
     @property
     def between(self) -> tuple[int, ...]:
@@ -196,6 +214,7 @@ class ToleranceResult(Shown):
                 for reason in self.reasons
             ],
             "attack": None if self.attack is None else self.attack.as_dict(),
+            "parameters": None if self.parameters is None else self.parameters.as_dict(self.threat),
         }
 
     def evidence(self) -> list[tuple[str, str]]:

@@ -63,7 +63,10 @@ def sentences_of(table: ToleranceTable) -> list[str]:
 
 def _scope(results: Sequence[ToleranceResult]) -> Iterator[str]:
     """Yield what the promises rest on."""
-    if any(result.guaranteed >= 0 for result in results):
+    given = results[0].parameters if results else None
+    if given is not None:
+        yield f"For {given.told([result.threat for result in results])}."
+    elif any(result.guaranteed >= 0 for result in results):
         yield "What is guaranteed holds for the update rules, weights and gains that its theorem names."
     sequence = results[0].sequence if results else None
     if sequence is not None and sequence.period is None:
