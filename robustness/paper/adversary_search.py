@@ -1,6 +1,6 @@
 """Adversaries that search: what they leave of the spread on every small network that only the exact condition promises.
 
-``python -m robustness.paper.searching docs`` makes docs/searching-adversaries.md anew, in some minutes.
+``python -m robustness.paper.adversary_search docs`` makes docs/searching-adversaries.md anew, in some minutes.
 
 A *policy* repeats after a few steps. It says for every phase whom each liar shows what (the lowest place of the normal
 vehicles, the highest, or the receiver's own), how old what everybody hears is, and who updates. It is found by hill
@@ -252,7 +252,7 @@ on up to 7 nodes and every digraph on up to 4 that only the exact condition prom
 $(2f+1)$-robust. It is made by a command:
 
 ```
-python -m robustness.paper.searching docs
+python -m robustness.paper.adversary_search docs
 ```
 
 An adversary chooses the liars (every set of at most $f$, and, where there is no local trap, every set with at
