@@ -112,7 +112,7 @@ class TestJson:
         (model,) = found["models"]
         assert list(model) == [
             "model", "setting", "guaranteed", "refuted", "undecided", "is_decided", "summary", "reasons",
-            "attack", "confirmed",
+            "attack", "parameters", "confirmed",
         ]  # fmt: skip
         assert (model["model"], model["guaranteed"], model["refuted"]) == ("delayed", 0, 1)
         assert (model["undecided"], model["is_decided"], model["confirmed"]) == ([], True, True)
