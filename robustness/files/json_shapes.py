@@ -1,18 +1,18 @@
 """Graphs in the shapes of JSON that other programs write, told apart by their keys.
 
-=======================================  =================================================================
-shape                                    written by
-=======================================  =================================================================
-``elements`` of ``data``, or these alone Cytoscape
-``graph`` with ``nodes`` and ``edges``   JSON Graph Format, nodes as an object or a list
-``nodes`` and ``adjacency``              networkx, adjacency data
-``nodes`` with ``key``                   graphology, sigma.js
-``edges`` with ``from`` and ``to``       vis.js, pyvis; ``arrows`` says which way
-``links`` between places or names        D3, where nodes have no ``id``
-``nodes`` and ``edges`` as plain lists   by hand
-``{u: [v, ...], ...}``                   by hand; networkx, dicts of lists or dicts
-``[[u, v], ...]``, ``[{...}, ...]``      lists of links
-=======================================  =================================================================
+========================================  =================================================================
+shape                                     written by
+========================================  =================================================================
+``elements`` of ``data``, or these alone  Cytoscape
+``graph`` with ``nodes`` and ``edges``    JSON Graph Format, nodes as an object or a list
+``nodes`` and ``adjacency``               networkx, adjacency data
+``nodes`` with ``key``                    graphology, sigma.js
+``edges`` with ``from`` and ``to``        vis.js, pyvis; ``arrows`` says which way
+``links`` between places or names         D3, where nodes have no ``id``
+``nodes`` and ``edges`` as plain lists    by hand
+``{u: [v, ...], ...}``                    by hand; networkx, dicts of lists or dicts
+``[[u, v], ...]``, ``[{...}, ...]``       lists of links
+========================================  =================================================================
 
 NetJSON is node-link JSON with other words around it and needs nothing of its own.
 """
