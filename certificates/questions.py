@@ -102,7 +102,7 @@ def comparison(claim: Claim, question: Question) -> tuple[bool, str]:
     if not asked:
         return True, "compared with no question: state one to have the claim compared with it"
     foreign = [name for name in asked if not hasattr(claim, name)]
-    if foreign:
+    if foreign or isinstance(claim, VerifiedMendingClaim):  # which has no part that a question names
         return False, f"the certificate says nothing about {', '.join(foreign)}"
     wrong = [f"{name} {value}" for name, value in asked.items() if value != getattr(claim, name)]
     if not wrong:
@@ -112,10 +112,8 @@ def comparison(claim: Claim, question: Question) -> tuple[bool, str]:
     return False, f"the claim proved is not the one asked for ({', '.join(wrong)})"
 
 
-def _implies(claim: Claim, question: Question) -> bool:
+def _implies(claim: VerifiedClaim | VerifiedJointClaim | VerifiedToleranceClaim, question: Question) -> bool:
     """Return whether a claim whose other parts are as asked implies what is asked of r and s, or of f."""
-    if isinstance(claim, VerifiedMendingClaim):
-        return False
     if isinstance(claim, VerifiedToleranceClaim):
         if (question.verdict, question.faces, question.bound) != (claim.verdict, claim.faces, claim.bound):
             return False

@@ -105,8 +105,7 @@ def _role(threat: Threat, state: Roles) -> None:
             T[side] |= F[side] & ~Q[side]
     if state.Z & ~(Q[0] | Q[1]) or not P[0] or not P[1] or (not threat.two_faces and F[0] & F[1]):
         raise Contradiction
-    if any(F[side] & ~(P[side] | Q[side]) or T[side] & ~P[side] for side in (0, 1)):
-        raise Contradiction
+    # A node that is inside and can be neither has become malicious, then normal, and so is in neither Q: found above.
 
 
 def _budget(threat: Threat, state: Roles) -> None:

@@ -88,7 +88,7 @@ class Digraph:
         self._build(given, ends)
         self.directed = directed
         self.read_as = read_as
-        self.node_attributes = MappingProxyType({plain_label(node): values for node, values in node_attributes.items()})
+        self.node_attributes = {plain_label(node): values for node, values in node_attributes.items()}
 
     @classmethod
     def from_ends(

@@ -149,8 +149,7 @@ def test_thin_is_certified_about_the_nodes_without_links() -> None:
         subject_of(whole, changed(data, put("actions", "links", value=[1])))
 
 
-def test_goals_without_evidence_and_results_without_a_question() -> None:
-    assert certify_mending(rb.mend(PATH, rb.Goal(survive=1, model="malicious-local"))) is None
+def test_results_without_a_question() -> None:
     result = rb.mend(PATH, 2)
     by_hand = rb.MendResult(result.verdict, result.goals, (), 0, 0, PATH, PATH)
     with pytest.raises(InvalidParameter, match="does not know its question"):

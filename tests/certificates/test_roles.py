@@ -150,3 +150,12 @@ def test_an_exclusion_excludes_no_solution_also_after_others(kind: tuple[bool, b
                 done += 1
                 state.P[side] &= ~(1 << j)
     assert done > 5
+
+
+@pytest.mark.parametrize("elsewhere", [0, 4])
+def test_a_node_that_is_inside_and_can_be_neither_is_a_contradiction(elsewhere: int) -> None:
+    graph = Digraph.from_networkx(nx.complete_graph(3))
+    threat = Threat.of(decode_graph(graph.canonical_bytes()), 1, True, False)
+    state = Roles([3, 7], [0, elsewhere], [4, 0], [0, 0], 0)  # it may be malicious on the other side, or nowhere
+    with pytest.raises(Contradiction):
+        settle(threat, state)
