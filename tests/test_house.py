@@ -105,7 +105,14 @@ class TestWheel:
             "ortools",
             "click",
         }
-        assert set(metadata.get_all("Provides-Extra", [])) == {"plot", "topologies", "formats", "testing", "dev"}
+        assert set(metadata.get_all("Provides-Extra", [])) == {
+            "plot",
+            "topologies",
+            "formats",
+            "cluster",
+            "testing",
+            "dev",
+        }
 
     def test_works_with_the_sources_out_of_reach(self, wheel: Path, tmp_path: Path) -> None:
         with zipfile.ZipFile(wheel) as archive:

@@ -280,7 +280,8 @@ def test_more_threads_than_the_system_has(hard: str, monkeypatch: pytest.MonkeyP
 
     monkeypatch.setattr(threading.Thread, "start", refuse_the_fifth)
     outcome = CliRunner().invoke(robustness, ["check", hard, "-r", "14", "--jobs", "3000", "--timeout", "1"])
-    assert outcome.exit_code == ExitCode.UNDECIDED, outcome.output
+    # With the threads there are, it is decided in time or not: it is no error.
+    assert outcome.exit_code in (ExitCode.UNDECIDED, ExitCode.DONE), outcome.output
     refused = CliRunner().invoke(robustness, ["check", hard, "-r", "14", "--jobs", "2"])
     assert refused.exit_code == ExitCode.USAGE
     assert refused.stderr == "error: can't start new thread: give fewer --jobs\n"

@@ -114,7 +114,7 @@ def test_one_command_verifies_whatever_the_toolkit_writes(tmp_path: Path) -> Non
     run = CliRunner().invoke
     assert run(robustness, ["tolerance", str(tmp_path / "wheel.json"), "-o", str(tmp_path / "out")]).exit_code == 0
     graph, found = str(tmp_path / "out" / "graph.json"), sorted((tmp_path / "out").glob("*.cert"))
-    assert len(found) == 11
+    assert len(found) == 12
     for path in found:
         outcome = run(robustness, ["verify", graph, str(path)])
         assert (outcome.exit_code, outcome.stderr) == (0, ""), path
