@@ -10,6 +10,7 @@ from pathlib import Path
 
 import certificates
 from certificates import MalformedCertificate, RejectedCertificate, VerifiedClaim
+from robustness.errors import InternalError
 
 __all__ = ["NAME", "CheckerUnavailable", "find_checker", "verify_with"]
 
@@ -22,7 +23,7 @@ _CLAIM = re.compile(
 
 
 class CheckerUnavailable(Exception):
-    """There is no executable of that name, or it ended without an answer."""
+    """There is no executable of that name, or it cannot be started."""
 
 
 def find_checker() -> Path | None:
@@ -41,7 +42,9 @@ def verify_with(checker: Path, graph_bytes: bytes, certificate_bytes: bytes) -> 
     MalformedCertificate, RejectedCertificate
         As the checker says, by its exit codes 3 and 10.
     CheckerUnavailable
-        When it ends in any other way.
+        When it cannot be started.
+    InternalError
+        When it ends in any other way: it crashed, or it is another program. That is never a verdict.
     """
     with tempfile.TemporaryDirectory() as folder:
         graph, certificate = Path(folder, "graph"), Path(folder, "certificate")
@@ -60,7 +63,7 @@ def verify_with(checker: Path, graph_bytes: bytes, certificate_bytes: bytes) -> 
         raise RejectedCertificate(f"{why} (says {checker})")
     found = _CLAIM.match(run.stdout)
     if run.returncode != 0 or found is None:
-        raise CheckerUnavailable(
+        raise InternalError(
             f"{checker} ended with exit code {run.returncode} and no answer: {run.stderr.strip()[:200]}"
         )
     return VerifiedClaim(

@@ -149,7 +149,7 @@ def _verified_formally(source: str, certificate: bytes) -> Claim:
     try:
         return verify_with(found, load_graph(source).canonical_bytes(), certificate)
     except CheckerUnavailable as problem:
-        raise click.ClickException(str(problem)) from None
+        raise click.UsageError(f"{problem}.") from None
 
 
 def _sequence_bytes(source: str) -> bytes:

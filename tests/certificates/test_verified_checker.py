@@ -144,6 +144,33 @@ def test_without_the_checker_the_command_says_how_to_get_it(monkeypatch: pytest.
     assert "make formal" in outcome.stderr
 
 
+@pytest.mark.parametrize(
+    ("script", "code"),
+    [
+        ("#!/bin/sh\necho 'Fatal error: exception Not_found' >&2\nexit 2\n", 1),
+        ("#!/bin/sh\nkill -9 $$\n", 1),
+        ("#!/bin/sh\necho 'verified: whatever you like'\n", 1),
+        ("#!/nowhere/sh\n", 2),
+    ],
+    ids=["crashed", "killed", "another program", "cannot be started"],
+)
+def test_a_checker_without_an_answer_is_no_verdict(
+    script: str, code: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """A checker that ends without an answer is an internal error; one that cannot be started is not to be had."""
+    program = tmp_path / "robustness-verified"
+    program.write_text(script)
+    program.chmod(0o755)
+    monkeypatch.setattr("cli.verified.find_checker", lambda: program)
+    (tmp_path / "c.cert").write_bytes(certificate(WHEEL, 2, 2, body=searched(WHEEL, 2, 2)))
+    (tmp_path / "wheel.json").write_bytes(WHEEL.canonical_bytes())
+    paths = [str(tmp_path / "wheel.json"), str(tmp_path / "c.cert")]
+    outcome = CliRunner().invoke(robustness, ["verify", *paths, "--checker", "verified"])
+    assert outcome.exit_code == code
+    assert "verified:" not in outcome.stdout
+    assert str(program) in outcome.stderr
+
+
 @pytest.mark.parametrize("page", ["formal.md", "trust.md"])
 def test_the_statement_on_the_page_is_the_one_in_the_source(page: str) -> None:
     """Every block of Coq on the page stands in a source file, word for word."""
