@@ -87,10 +87,14 @@ def command(
                 **query.effort(line),
             )
 
+        is_interrupted = False
         try:
             result = query.wait_for(work, line)
-        except Overrun:
-            result = FindResult(FindVerdict.UNDECIDED, stats={"reason": "the time limit was reached"})
+        except (Overrun, KeyboardInterrupt) as stop:
+            is_interrupted = isinstance(stop, KeyboardInterrupt)
+            reason = "interrupted" if is_interrupted else "the time limit was reached"
+            stats = {"reason": f"{reason} ({line.note})" if line.note else reason}
+            result = FindResult(FindVerdict.UNDECIDED, stats=stats)
     if output is not None and result.graph is not None:
         write_graph(result.graph, output)
     if query.as_json:
@@ -102,7 +106,7 @@ def command(
         FindVerdict.IMPOSSIBLE: ExitCode.REFUTED,
         FindVerdict.UNDECIDED: ExitCode.UNDECIDED,
     }
-    ctx.exit(codes[result.verdict])
+    ctx.exit(ExitCode.INTERRUPTED if is_interrupted else codes[result.verdict])
 
 
 def _document(result: FindResult) -> dict[str, Any]:

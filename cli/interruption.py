@@ -20,7 +20,7 @@ from typing import TypeVar
 __all__ = ["GRACE", "Overrun", "end_process", "interruptibly"]
 
 #: Seconds that work may take beyond its time limit to come back with what it knows.
-GRACE = 1.0
+GRACE = 0.5
 
 _Result = TypeVar("_Result")
 

@@ -132,7 +132,8 @@ def command(
     require_different_files([source], [picture, certificate, canonical])
     sequence = read_sequence(source, period=period, step=step, both_ways=both_ways, reading=asked_reading())
     with ProgressLine(console) as line:
-        survey = Survey(sequence, r, s, tau, Clock(query.timeout), query, line)
+        survey = Survey(sequence, r, s, tau, Clock(query.timeout), query, line, [])
+        is_interrupted = False
         drawn = picture is not None
         try:
             report = query.wait_for(
@@ -141,8 +142,9 @@ def command(
                 ),
                 line,
             )
-        except Overrun:
-            report = survey.overrun(window)
+        except (Overrun, KeyboardInterrupt) as stop:
+            is_interrupted = isinstance(stop, KeyboardInterrupt)
+            report = survey.stopped(window, "interrupted" if is_interrupted else "the time limit was reached")
     written = _write(report, certificate, canonical)
     if query.as_json:
         asked = {} if certificate is canonical is None else {"files": written}
@@ -157,6 +159,9 @@ def command(
         console.talk(f"wrote {picture}")
     for path in written.values():
         console.talk(f"wrote {path}")
+    if is_interrupted:
+        console.error("interrupted: what is printed holds, nothing else is claimed")
+        ctx.exit(ExitCode.INTERRUPTED)
     if certificate is not None and report.certificate is None:
         raise Undecided("no certificate: the time limit was reached: raise --timeout")
     ctx.exit(ExitCode.of_verdict(report.result.verdict.value))
@@ -184,12 +189,14 @@ class Survey:
     clock: Clock
     query: Query
     line: ProgressLine
+    finished: list[JointResult]
 
     def report(
         self, window: int | None, all_windows: bool, with_curve: bool, drawn: bool, *, certified: bool = False
     ) -> Report:
         """Answer the question of the command line, and what goes with it."""
         result = shown = self._decide(window, all_windows)
+        self.finished.append(result)
         failing = result.violation or result.shorter_fails
         if drawn and window is None and failing is not None:
             # At the smallest length nothing fails: the length below it makes the picture, or one that no length mends.
@@ -197,12 +204,13 @@ class Survey:
         report = Report(self.sequence, result, self._curve() if with_curve else None, shown)
         return replace(report, certificate=self._certificate(result)) if certified else report
 
-    def overrun(self, window: int | None) -> Report:
-        """Return that nothing is known: the time went into compiling, which the library cannot stop."""
+    def stopped(self, window: int | None, reason: str) -> Report:
+        """Return the answer where it was finished, without what goes with it, or that nothing is known."""
         from robustness.results import Verdict
         from robustness.time_varying import JointResult
 
-        reason = "the time limit was reached"
+        if self.finished:
+            return Report(self.sequence, self.finished[0], None, self.finished[0])
         result = JointResult(Verdict.UNDECIDED, self.r, self.s, asked_window=window, tau=self.tau, reason=reason)
         return Report(self.sequence, result, None, result)
 

@@ -111,7 +111,8 @@ def _report(console: Console, problem: BaseException) -> ExitCode:
         console.error("".join(traceback.format_exception(problem)).rstrip())
     match code:
         case ExitCode.INTERRUPTED:
-            message = "interrupted: nothing is claimed"
+            where = f" at {problem}" if str(problem) else ""
+            message = f"interrupted{where}: nothing is claimed"
         case ExitCode.INTERNAL_ERROR:
             hint = "" if console.is_verbose else "; -v shows where"
             message = f"internal error, not a verdict: {type(problem).__name__}: {problem}{hint}"

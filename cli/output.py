@@ -101,7 +101,7 @@ pass_console = click.make_pass_decorator(Console, ensure=True)
 class ProgressLine:
     """One line on a terminal's standard error that is redrawn while a search runs, and wiped when it ends.
 
-    Pass the instance as ``progress`` and :attr:`note_bounds` as ``on_bounds``; ``bounds`` holds the latest.
+    Pass the instance as ``progress`` and :attr:`note_bounds` as ``on_bounds``; ``bounds`` and ``note`` hold the latest.
     """
 
     def __init__(self, console: Console) -> None:
@@ -110,7 +110,8 @@ class ProgressLine:
         self._shown = is_terminal and not console.is_quiet and os.environ.get("TERM") != "dumb"
         self._started = self._drawn = time.monotonic()
         self._text = ""
-        self._parts: tuple[str, ...] = ("starting",)
+        self.note = ""
+        self._nodes = 0
 
     def __enter__(self) -> ProgressLine:
         return self
@@ -122,7 +123,7 @@ class ProgressLine:
 
     def __call__(self, progress: Progress) -> None:
         """Show how far the search is."""
-        self._parts = (f"{progress.nodes:,} nodes visited", _harmless(progress.note))
+        self._nodes, self.note = progress.nodes, _harmless(progress.note)
         self.tick()
 
     def note_bounds(self, bounds: Bounds) -> None:
@@ -136,7 +137,9 @@ class ProgressLine:
             return
         self._drawn = now
         known = f"{self.bounds.lower.value} <= r* <= {self.bounds.upper.value}" if self.bounds else ""
-        text = ", ".join(part for part in (f"{now - self._started:.0f} s", known, *self._parts) if part)
+        visited = f"{self._nodes:,} nodes visited" if self._nodes else ""
+        parts = (f"{now - self._started:.0f} s", known, visited, self.note or "starting")
+        text = ", ".join(part for part in parts if part)
         self._text = text[: shutil.get_terminal_size().columns - 1]
         _write(f"\r\x1b[K{self._text}", to_error=True, end="")
 

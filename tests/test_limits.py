@@ -157,12 +157,32 @@ def test_a_budget_of_steps_ends_by_itself_or_when_asked_to() -> None:
     assert Steps(stop=lambda: True).over()
 
 
-def test_no_file_of_the_library_has_a_number_of_seconds_that_decides() -> None:
-    """Seconds that only say how often to look at the clock, or to tell progress, are named here."""
-    allowed = {"_PROGRESS_SECONDS", "_STEP", "_GRACE", "_ESTIMATE_SECONDS", "_SLICE", "_LONGEST"}
-    found = {
-        (path.name, name)
-        for path in (ROOT / "robustness").rglob("*.py")
-        for name in re.findall(r"^(_?[A-Z_]*SECONDS[A-Z_]*)\b.*=", path.read_text(encoding="utf-8"), re.MULTILINE)
+#: Constants in seconds: the names after a comment that begins so, and names that say it.
+_TIMES = re.compile(
+    r"^#: Seconds.*\n(?:#.*\n)*([A-Z_, ]+?) =|^(_?[A-Z_]*(?:SECONDS|PATIENCE|GRACE)[A-Z_, ]*?) (?::.*)?=", re.MULTILINE
+)
+
+
+def test_no_file_has_a_number_of_seconds_that_decides() -> None:
+    """Seconds that say how often to look at the clock, how long after the user's limit, or when a worker is lost."""
+    allowed = {
+        "_STEP",
+        "GRACE",
+        "_GRACE",
+        "_ESTIMATE_SECONDS",
+        "_FETCH",
+        "_STALE",
+        "_FIRST_SLICE, _LONGEST_SLICE",
+        "_PATIENCE, _GRACE",
+        "_ALONE",
+        "_SYNC",
+        "_PROGRESS_SECONDS",
     }
-    assert {name for _, name in found} <= allowed
+    found = {
+        "".join(names)
+        for folder in ("robustness", "cli", "certificates")
+        for path in (ROOT / folder).rglob("*.py")
+        for names in _TIMES.findall(path.read_text(encoding="utf-8"))
+    }
+    assert {"GRACE", "_STEP", "_ALONE"} <= found
+    assert found <= allowed, found - allowed

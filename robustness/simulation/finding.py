@@ -10,7 +10,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
-from robustness.decision.front import check_rs_robustness
+from robustness.decision.algorithms.registry import require_algorithm
+from robustness.decision.front import check_within
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.gain_region import gain_gap, gain_region
@@ -18,9 +19,10 @@ from robustness.limits import Limits, Progress
 from robustness.results import Verdict
 from robustness.simulation.attacks import Attack, attack_from_trap, attack_from_violation
 from robustness.simulation.gains import arc_weights, kept_weight_bound
-from robustness.traps import find_trap
+from robustness.traps.ladder import decide_trap
+from robustness.traps.question import Question
 
-__all__ = ["ATTACK_MODELS", "Finding", "find_attack"]
+__all__ = ["ATTACK_MODELS", "Finding", "find_attack", "find_attack_within"]
 
 #: What the attacker may do, by the names of :mod:`robustness.threat_models`: lie to all alike, to each neighbour
 #: differently, or to all alike with delays; and whether the bound is in all or around every normal node.
@@ -115,19 +117,27 @@ def find_attack(
         raise InvalidParameter(f"an attack's model is one of {', '.join(ATTACK_MODELS)}, not {model!r}")
     if type(f) is not int or f < 0:
         raise InvalidParameter(f"f is an integer of at least 0, not {f!r}")
-    if graph.n < 2:
-        return Finding(None, "agreement", "fewer than two nodes: nobody to disagree with")
+    require_algorithm(algorithm)
     limits = Limits.of(time_limit, jobs, seed, progress)
-    gap = _gap(graph, f, T, alpha, sigma)
-    if model == "malicious":
-        found = _find_violation(graph, f, limits, algorithm)
-    else:
-        found = _find_by_search(graph, f, model, limits, algorithm)
-    if found.outcome != "agreement":
+    gap = None if graph.n < 2 else _gap(graph, f, T, alpha, sigma)
+    found = find_attack_within(graph, f, model, limits, algorithm)
+    if graph.n < 2 or found.outcome != "agreement":
         return found
     if gap is None:
         return replace(found, reason=f"{found.reason}, {_CONDITION}")
     return Finding(None, "undecided", f"{found.reason} under W-MSR, but with these gains nothing is promised: {gap}")
+
+
+def find_attack_within(graph: Digraph, f: int, model: str, limits: Limits, algorithm: str = "auto") -> Finding:
+    """Do what :func:`find_attack` does for whatever gains and a question that is known to be valid, within ``limits``.
+
+    For those of this package who have limits of their own, and budgets of steps with them.
+    """
+    if graph.n < 2:
+        return Finding(None, "agreement", "fewer than two nodes: nobody to disagree with")
+    if model == "malicious":
+        return _find_violation(graph, f, limits, algorithm)
+    return _find_by_search(graph, f, model, limits, algorithm)
 
 
 def _gap(graph: Digraph, f: int, T: float | None, alpha: float | None, sigma: float | None) -> str | None:
@@ -143,7 +153,7 @@ def _gap(graph: Digraph, f: int, T: float | None, alpha: float | None, sigma: fl
 def _find_violation(graph: Digraph, f: int, limits: Limits, algorithm: str) -> Finding:
     """Return the attack of a violating pair, or that there is none."""
     # A violating pair leaves a node of each set unreachable, so beyond s = n the third condition says no more.
-    result = check_rs_robustness(graph, f + 1, min(f + 1, graph.n), algorithm=algorithm, **limits.keywords())
+    result = check_within(graph, f + 1, min(f + 1, graph.n), limits, algorithm)
     if result.verdict is Verdict.UNDECIDED:
         return Finding(None, "undecided", f"({f + 1},{f + 1})-robustness was not decided: raise the time limit")
     if result.witness is None:
@@ -156,18 +166,18 @@ def _find_by_search(graph: Digraph, f: int, model: str, limits: Limits, algorith
     """Return the attack that the trap search finds, or what its absence proves."""
     faces, local, faults = _KINDS[model]
     # (2f+1)-robust graphs have no attack of these kinds, which spares the search; that check gets half of the time.
-    strong = check_rs_robustness(graph, 2 * f + 1, algorithm=algorithm, **limits.share(1 / 2).keywords())
+    strong = check_within(graph, 2 * f + 1, 1, limits.share(1 / 2), algorithm)
     if strong.verdict is Verdict.ROBUST:
         return Finding(None, "agreement", f"{2 * f + 1}-robust: f = {f} nodes do not split it, two-faced or not")
-    found = find_trap(graph, f, faces=faces, local=local, **limits.keywords())
+    found = decide_trap(graph, Question(f, faces == 2, local), limits)
     if found.exists is None:
         return Finding(None, "undecided", f"whether f = {f} nodes split it was not decided: raise the time limit")
-    if found.exists:
-        sets = found.M, found.S1, found.S2
+    if found.sets is not None:
+        M, S1, S2 = (graph.labels_of(ids) for ids in found.sets)
         if faces == 1:
-            attack = attack_from_violation(graph, f, sets[1:], malicious=sets[0], model=faults)
+            attack = attack_from_violation(graph, f, (S1, S2), malicious=M, model=faults)
         else:
-            attack = attack_from_trap(graph, f, *sets, model=faults)
+            attack = attack_from_trap(graph, f, M, S1, S2, model=faults)
         return Finding(attack, "split", f"{'trapped' if faces == 2 else 'held apart'}: {attack.story()}")
     bound = "f-local set of nodes" if local else f"{f} nodes"
     known = f"{f + 1}-robust without any {bound}" if faces == 2 else "no local violation"

@@ -10,6 +10,7 @@ import numpy as np
 
 from robustness.digraph import Digraph, GraphLike
 from robustness.errors import InvalidParameter
+from robustness.limits import Progress
 from robustness.simulation.adversaries import Adversary
 from robustness.simulation.arguments import integer, schedule_from
 from robustness.simulation.outcome import Outcome
@@ -47,6 +48,7 @@ def simulate(
     positions: Sequence[float] | Mapping[Hashable, float] | None = None,
     velocities: Sequence[float] | Mapping[Hashable, float] | None = None,
     time_limit: float | None = None,
+    progress: Callable[[Progress], None] | None = None,
     **options: Any,
 ) -> Outcome:
     """Run resilient consensus on a network under attack, and return what came of it, with all positions.
@@ -78,8 +80,8 @@ def simulate(
     positions, velocities : sequence in the order of the nodes, or mapping, optional
         The start; by default positions drawn from the seed in 0 .. 100, at rest. Nodes that a mapping does not name
         get 0.
-    time_limit : float, optional
-        Wall-clock seconds.
+    time_limit, progress : optional
+        As for :func:`robustness.simulation.simulate`.
     **options
         Fields of :class:`robustness.simulation.Scenario`: ``T``, ``alpha``, ``weights``, ``target_speed``, ``offsets``,
         ``active``, ``added_links``, ``groups``, ``tolerance``, ``dwell``, ``growth``.
@@ -137,7 +139,7 @@ def simulate(
             start.velocities if velocities is None else _in_order(graph, "velocities", velocities),
             start.seed,
         )
-    return simulate_batch(scenario, [start], record=True, time_limit=time_limit)[0]
+    return simulate_batch(scenario, [start], record=True, time_limit=time_limit, progress=progress)[0]
 
 
 def most_heard(graph: Digraph, f: int) -> list[Any]:

@@ -92,6 +92,14 @@ class Observer:
                 store[step] = values
         self.final = p
 
+    def so_far(self, step: int, seen: int) -> str:
+        """Return a step in words, and the greatest spread of all runs in the last of the ``seen`` states."""
+        where = f"step {step} of {self.scenario.steps}"
+        if not seen or not self.normal.any():
+            return where
+        spread = self.high - self.low
+        return f"{where} (spread {spread[seen - 1].max():g}, {spread[0].max():g} at first)"
+
     def outcomes(self, diverged: npt.NDArray[np.int64]) -> tuple[Outcome, ...]:
         """Return the outcome of every run, given the steps ``(B,)`` at which they diverged (-1: not)."""
         return tuple(self._outcome(b, int(step)) for b, step in enumerate(diverged))

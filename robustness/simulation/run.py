@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 from robustness.errors import InvalidParameter, Undecided
+from robustness.limits import Progress
 from robustness.simulation.engine import Batch
 from robustness.simulation.gains import Fleet, PromiseWarning
 from robustness.simulation.observer import Observer
@@ -27,6 +28,7 @@ def simulate(
     record: bool = False,
     jobs: int = 1,
     time_limit: float | None = None,
+    progress: Callable[[Progress], None] | None = None,
 ) -> tuple[Outcome, ...]:
     """Run a scenario from every start, all at once.
 
@@ -41,6 +43,8 @@ def simulate(
         Threads for large batches; the result does not depend on it.
     time_limit : float, optional
         Wall-clock seconds.
+    progress : callable, optional
+        Called at every step with a :class:`~robustness.limits.Progress`, whose note tells step and spread.
 
     Returns
     -------
@@ -52,7 +56,7 @@ def simulate(
     InvalidParameter
         When a start does not fit the network, or the adversary breaks its fault model or the schedule.
     Undecided
-        When the time limit came before the horizon.
+        When the time limit came before the horizon; the message tells the step and the spread so far.
 
     Warns
     -----
@@ -93,14 +97,17 @@ def simulate(
             "not fit into memory: run fewer at once"
         ) from None
 
-    def watch_the_time(step: int) -> None:
+    def watch_the_time(step: int, seen: int = 0) -> None:
+        if progress is not None:
+            progress(Progress(0, observer.so_far(step, seen)))
         if time.monotonic() > deadline:
-            raise Undecided(f"the time limit came at step {step} of {scenario.steps}: raise it, or run fewer steps")
+            told = observer.so_far(step, seen)
+            raise Undecided(f"the time limit came at {told}: raise it, or run fewer steps")
 
     with ThreadPoolExecutor(batch.jobs) as pool:
         batch.play_history(watch_the_time)
         for step in range(scenario.steps):
-            watch_the_time(step)
+            watch_the_time(step, step)
             batch.act(step)
             observer.see(step, batch.p, batch.q, batch.sent)
             batch.advance(step, pool)

@@ -28,7 +28,7 @@ def decide(
     look_ahead: bool = True,
     transcript: bool = False,
 ) -> TrapAnswer:
-    """Return whether a solution exists (None past the deadline), one, and counters.
+    """Return whether a solution exists (None past the deadline or the budget of steps), one, and counters.
 
     Exponential in the worst case. ``counting`` and ``look_ahead`` are switches for what they are named after; the
     answer does not depend on them. With ``transcript`` the answer that there is no solution carries the refutation that
@@ -41,7 +41,7 @@ def decide(
         _Run(hears, need, question, counting, look_ahead, eager, transcript)
         for eager in (False, True)[: 1 + look_ahead]
     ]
-    told = time.monotonic()
+    told, allowed = time.monotonic(), limits.nodes_allowed(graph.n)
     while True:
         for run in runs:
             run.advance()
@@ -52,6 +52,8 @@ def decide(
                 return TrapAnswer(True, run.solution, stats=stats)
             if limits.expired():
                 return TrapAnswer.undecided("the time limit was reached", stats)
+            if stats["nodes"] >= allowed:
+                return TrapAnswer.undecided("the budget of steps was spent", stats)
         if limits.progress is not None and time.monotonic() - told > 0.2:
             told = time.monotonic()
             limits.progress(Progress(stats["nodes"], f"traps for f = {question.f}"))

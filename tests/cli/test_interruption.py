@@ -115,3 +115,36 @@ def test_the_process_ends_in_the_code_it_is_given(monkeypatch: pytest.MonkeyPatc
         end_process(30)
     release.set()
     assert ends == [30]
+
+
+def test_ctrl_c_in_a_run_tells_how_far_it_came(monkeypatch: pytest.MonkeyPatch) -> None:
+    from robustness.simulation.engine import Batch
+
+    act = Batch.act
+
+    def stopped(self: Batch, step: int) -> None:
+        if step == 7:
+            raise KeyboardInterrupt
+        act(self, step)
+
+    monkeypatch.setattr(Batch, "act", stopped)
+    outcome = CliRunner().invoke(robustness, ["simulate", SQUARE, "-f", "0", "--steps", "20", "--adversary", "sine"])
+    assert outcome.exit_code == 130
+    assert "interrupted at step 7 of 20 (spread " in outcome.stderr
+
+
+def test_ctrl_c_after_the_answer_keeps_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    def stopped(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    trace = tmp_path / "trace.csv"
+    trace.write_text("time,source,target\n0,a,b\n0,b,a\n1,b,c\n1,c,b\n")
+    monkeypatch.setattr("robustness.time_varying.joint_curve", stopped)
+    outcome = CliRunner().invoke(robustness, ["joint", str(trace), "-r", "1", "--curve", "--json"])
+    assert outcome.exit_code == 130
+    assert json.loads(outcome.stdout)["verdict"] == "robust"
+
+    monkeypatch.setattr("robustness.graph_search.find_graph", stopped)
+    outcome = CliRunner().invoke(robustness, ["find", "-n", "6", "-p", "2-robust", "--json"])
+    assert outcome.exit_code == 130
+    assert json.loads(outcome.stdout)["stats"]["reason"] == "interrupted"

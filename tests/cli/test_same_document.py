@@ -25,9 +25,11 @@ COMMANDS = [
     "tolerance {graph}",
     "attack {graph} -f 2",
     "simulate {graph} --steps 40 --adversary greedy",
+    "simulate {hard} --steps 10 -f 2 --schedule delayed",
     "joint {trace} -r 2",
     "find -n 6 -p 2-robust --fewest-edges",
     "survey {graph}",
+    "mend {graph} -r 4",
 ]
 
 
@@ -53,9 +55,15 @@ def places(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("same")
     graph = nx.relabel_nodes(nx.gnp_random_graph(24, 0.35, seed=3), "n{}".format)
     rb.write_topology(graph, folder / "graph.json")
+    rb.write_topology(nx.random_regular_graph(10, 80, seed=1), folder / "hard.json")
     links = [f"{k % 4},{u},{v}\n{k % 4},{v},{u}" for k, (u, v) in enumerate(graph.edges)]
     (folder / "trace.csv").write_text("time,source,target\n" + "\n".join(sorted(links)) + "\n")
-    return {"graph": folder / "graph.json", "trace": folder / "trace.csv", "folder": folder}
+    return {
+        "graph": folder / "graph.json",
+        "hard": folder / "hard.json",
+        "trace": folder / "trace.csv",
+        "folder": folder,
+    }
 
 
 def document_of(command: str, places: dict[str, Path]) -> Any:

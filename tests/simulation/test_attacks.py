@@ -32,7 +32,8 @@ from robustness.simulation import (
 from robustness.simulation.finding import ATTACK_MODELS
 from robustness.simulation.schedules import AdversarialDelays, AdversarialUpdates, RandomDelays, RandomUpdates, Schedule
 from robustness.threat_models import THREAT_MODELS
-from robustness.traps import TrapResult, exhaustive, is_trap
+from robustness.traps import exhaustive, is_trap
+from robustness.traps.question import Question, TrapAnswer
 
 LIGHT_SCHEDULES = [
     Schedule(RandomUpdates(0.4, 3), RandomDelays(2)),
@@ -351,18 +352,18 @@ class TestFinding:
         """A clock of our own: the check of robustness uses all it was given, and the search gets the rest."""
         clock, given = [100.0], []
 
-        def check(*_: Any, time_limit: float, **__: Any) -> RobustnessResult:
-            given.append(time_limit)
-            clock[0] += time_limit
+        def check(graph: Digraph, r: int, s: int, limits: Limits, *_: Any) -> RobustnessResult:
+            given.append(limits.seconds_left())
+            clock[0] += limits.seconds_left()
             return RobustnessResult(Verdict.UNDECIDED, 11, 1, None)
 
-        def search(*_: Any, time_limit: float, **__: Any) -> TrapResult:
-            given.append(time_limit)
-            return TrapResult(None, 5, 2, local=False)
+        def search(graph: Digraph, question: Question, limits: Limits) -> TrapAnswer:
+            given.append(limits.seconds_left())
+            return TrapAnswer(None)
 
         monkeypatch.setattr("robustness.limits.time.monotonic", lambda: clock[0])
-        monkeypatch.setattr(finding, "check_rs_robustness", check)
-        monkeypatch.setattr(finding, "find_trap", search)
+        monkeypatch.setattr(finding, "check_within", check)
+        monkeypatch.setattr(finding, "decide_trap", search)
         found = find_attack(nx.complete_graph(20), 5, model, time_limit=8.0)
         assert given == [4.0, 4.0]
         assert (found.outcome, found.attack) == ("undecided", None)
@@ -372,8 +373,8 @@ class TestFinding:
     def test_no_time_at_all_claims_nothing(self, model: str, monkeypatch: pytest.MonkeyPatch) -> None:
         """Whatever each search answers when it is stopped at once, that is not mistaken for a proof."""
         undecided = RobustnessResult(Verdict.UNDECIDED, 3, 1, None)
-        monkeypatch.setattr(finding, "check_rs_robustness", lambda *_, **__: undecided)
-        monkeypatch.setattr(finding, "find_trap", lambda *_, **__: TrapResult(None, 1, 2, local=False))
+        monkeypatch.setattr(finding, "check_within", lambda *_: undecided)
+        monkeypatch.setattr(finding, "decide_trap", lambda *_: TrapAnswer(None))
         assert find_attack(nx.complete_graph(9), 1, model, time_limit=1e-9).outcome == "undecided"
 
     def test_one_search_for_all_sets(self) -> None:

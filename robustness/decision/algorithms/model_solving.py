@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["decide", "largest_r", "largest_s", "verdict_of"]
 
 #: Solvers look at their clock now and then only; past this many seconds their thread is left alone.
-_GRACE = 0.5
+_GRACE = 0.25
 #: Three years: what the solvers are told for longer limits, which would overflow them.
 _LONGEST = 1e8
 #: A dual bound may exceed the integer it stands for by the solvers' tolerance (1e-6, times the size of the bound).

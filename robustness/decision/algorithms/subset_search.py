@@ -43,7 +43,7 @@ from robustness.kernels.layout import (
     PROBES,
     SYMMETRIC,
 )
-from robustness.limits import UNLIMITED, Limits, Progress
+from robustness.limits import Limits, Progress
 
 __all__ = ["MOST_NODES", "decide"]
 
@@ -122,7 +122,7 @@ class _Search:
         self.need = np.maximum(graph.in_degrees - r + 1, 0).astype(np.int64)
         self.spare = s - 1
         self.limits = limits
-        self.nodes_left = _nodes_for(limits.steps, graph.n)
+        self.nodes_left = limits.nodes_allowed(graph.n)
         self.transcript = transcript
         self.blockers = blockers
         self.look_ahead = look_ahead
@@ -301,12 +301,3 @@ class _Search:
 def _adjusted(quota: int, took: float) -> int:
     """Return the quota of the next slice after one that took so many seconds."""
     return int(min(max(quota * min(4.0, _SLICE / max(took, 1e-6)), 1), 1 << 30))
-
-
-def _nodes_for(steps: int | None, n: int) -> int:
-    """Return how many nodes of the search a budget of steps allows; one costs 10,000 and two for each pair of nodes.
-
-    Measured: 9 to 20 microseconds a node on 25 to 100 graph nodes, look-ahead included.
-    """
-    words = -(-n // 64)
-    return UNLIMITED if steps is None else max(1, steps // (10_000 + 2 * n * n * words))
