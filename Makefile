@@ -68,7 +68,7 @@ coverage-kernel: $(READY) ## every branch of the trusted kernel is taken by its 
 # The Coq proofs in their order, the statement of what they rest on, and the checker that Coq makes of them.
 FORMAL := $(BUILD)/formal
 PROOFS := Counting Bytes Robustness Sets Rules Soundness Refutation RefutationSound Tables Evidence Checks Growth Canonical \
-	Reading Certificate Unique Lemmas Traps Examples Assumptions Extract
+	Reading Certificate Unique Lemmas Traps Examples Proposition1 Assumptions Extract
 
 $(FORMAL)/robustness-verified: $(wildcard certificates/formal/*)
 	@command -v coqc >/dev/null && command -v ocamlopt >/dev/null || \

@@ -1,5 +1,5 @@
 (* What the theorems rest on: nothing but Coq. *)
-From Formal Require Import Certificate Unique Lemmas Traps Examples.
+From Formal Require Import Certificate Unique Lemmas Traps Examples Proposition1.
 Print Assumptions verify_sound.
 Print Assumptions describes_one.
 Print Assumptions lemma_1_i.
@@ -17,4 +17,4 @@ Print Assumptions K5_without_an_edge_is_3_robust.
 Print Assumptions a_1_robust_digraph_with_a_node_that_hears_nobody.
 Print Assumptions a_graph_without_arcs_is_0_robust.
 Print Assumptions the_last_line_has_no_converse.
-Print Assumptions proposition_1_corrected_for_1_and_2.
+Print Assumptions proposition_1_corrected.

@@ -1,6 +1,6 @@
 (* Where the source paper is wrong, by computation (docs/lemma-1.md): the definition is tried on all pairs of sets. *)
 From Coq Require Import List Bool Arith Lia.
-From Formal Require Import Counting Robustness Traps.
+From Formal Require Import Counting Robustness.
 Import ListNotations.
 
 (* All sets of nodes below n, as lists of truth values. *)
@@ -90,47 +90,3 @@ Proof.
   - specialize (Q 1). simpl in Q. discriminate Q. lia.
   - vm_compute in Q. lia.
 Qed.
-
-(* Proposition 1 corrected: K_{3f+2} without f + 1 edges that share no node is 2f-robust, every in-degree is at least
-   2f + 1, and yet there is a trap for f. Here for f = 1, the wheel on 5 nodes, and f = 2. *)
-Definition matched (f : nat) : digraph :=
-  Digraph (3 * f + 2) (fun i j => negb (i =? j) && negb ((i / 2 =? j / 2) && (i <? 2 * f + 2))).
-Definition evens (f : nat) : set := fun i => (i mod 2 =? 0) && (i <? 2 * f + 2).
-Definition odds (f : nat) : set := fun i => (i mod 2 =? 1) && (i <? 2 * f + 2).
-Definition rest (f : nat) : set := fun i => 2 * f + 2 <=? i.
-Definition proposition_1_for (f : nat) : Prop :=
-  robust (matched f) (2 * f) 1 /\ (forall i, i < nodes (matched f) -> 2 * f + 1 <= size (matched f) (hears (matched f) i)) /\
-  trap (matched f) f (rest f) (evens f) (odds f).
-
-Definition try_proposition_1 (f : nat) : bool :=
-  let G := matched f in
-  let V := seq 0 (nodes G) in
-  try G (2 * f) 1 && forallb (fun i => 2 * f + 1 <=? size G (hears G i)) V
-  && (size G (rest f) <=? f) && existsb (evens f) V && existsb (odds f) V
-  && forallb (fun i => negb (evens f i && odds f i) && negb (rest f i && evens f i) && negb (rest f i && odds f i)) V
-  && forallb (fun i => negb (evens f i) || (size G (fun j => hears G i j && negb (evens f j || rest f j)) <=? f)) V
-  && forallb (fun i => negb (odds f i) || (size G (fun j => hears G i j && negb (odds f j || rest f j)) <=? f)) V.
-
-Lemma try_proposition_1_sound : forall f, try_proposition_1 f = true -> proposition_1_for f.
-Proof.
-  intros f T. unfold try_proposition_1 in T. cbv zeta in T. do 7 (apply andb_true_iff in T; destruct T as [T ?]).
-  assert (E : forall p i, forallb p (seq 0 (nodes (matched f))) = true -> i < nodes (matched f) -> p i = true).
-  { intros p i F I. rewrite forallb_forall in F. apply F. apply in_seq. lia. }
-  assert (X : forall p, existsb p (seq 0 (nodes (matched f))) = true -> nonempty (matched f) p).
-  { intros p F. apply existsb_exists in F. destruct F as (i & I & P). exists i. apply in_seq in I. split; [lia|assumption]. }
-  assert (A : forall i, i < nodes (matched f) -> evens f i && odds f i = false /\ rest f i && evens f i = false /\ rest f i && odds f i = false).
-  { intros i I. specialize (E _ i H1 I). simpl in E. apply andb_true_iff in E. destruct E as [E E3].
-    apply andb_true_iff in E. destruct E as [E1 E2]. apply negb_true_iff in E1, E2, E3. auto. }
-  split; [apply try_sound; assumption|]. split.
-  - intros i I. apply Nat.leb_le. exact (E _ i H5 I).
-  - split; auto.
-    + apply Nat.leb_le. assumption.
-    + intros i I P Q. destruct (A i I) as (A1 & _). rewrite P, Q in A1. discriminate.
-    + intros i I P Q. destruct (A i I) as (_ & A2 & _). rewrite P, Q in A2. discriminate.
-    + intros i I P Q. destruct (A i I) as (_ & _ & A3). rewrite P, Q in A3. discriminate.
-    + intros i I P. specialize (E _ i H0 I). simpl in E. rewrite P in E. apply Nat.leb_le. exact E.
-    + intros i I P. specialize (E _ i H I). simpl in E. rewrite P in E. apply Nat.leb_le. exact E.
-Qed.
-
-Theorem proposition_1_corrected_for_1_and_2 : proposition_1_for 1 /\ proposition_1_for 2.
-Proof. split; apply try_proposition_1_sound; vm_compute; reflexivity. Qed.

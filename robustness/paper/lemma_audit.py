@@ -125,7 +125,8 @@ _TAIL = """
 * The proof of Proposition 1 cites (iv) where it adds nodes; it means (vii). The remark on the normal part cites
   (vi), which keeps the nodes; it needs the form for node removal (`remove_nodes`), which the table confirms.
 * (i) to (vii) have short proofs; those that the operations rely on stand in their docstrings. The last line follows
-  from (ii), used s - 1 times.
+  from (ii), used s - 1 times. (i), (ii), (v), (vi), (vii) in the sharper form and the last line are proved
+  [in Coq](formal.md#what-else-is-proven) for every digraph, as `lemma_1_i` and so on.
 """
 
 if __name__ == "__main__":
