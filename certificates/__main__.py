@@ -17,12 +17,13 @@ from pathlib import Path
 
 from certificates.envelope import MAX_CERTIFICATE_BYTES
 from certificates.errors import MalformedCertificate, RejectedCertificate
+from certificates.file_bytes import read_at_most
 from certificates.graph import MAX_GRAPH_BYTES
 from certificates.joint import MAX_SEQUENCE_BYTES, verify_joint
 from certificates.questions import Claim, Question, comparison, verify_any
 from certificates.tolerance import verify_tolerance
 
-__all__ = ["main", "read_at_most"]
+__all__ = ["main"]
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -56,6 +57,8 @@ def main(arguments: list[str] | None = None) -> int:
         claim = _verify(asked["command"], asked["subject"], asked["certificate"])
     except OSError as problem:
         return _fail(3, f"error: cannot read {problem.filename}: {problem.strerror}")
+    except MemoryError:
+        return _fail(3, "malformed: the files do not fit into memory")
     except MalformedCertificate as problem:
         return _fail(3, f"malformed: {problem}")
     except RejectedCertificate as problem:
@@ -83,15 +86,6 @@ def _verify(command: str, subject: Path, certificate: Path) -> Claim:
 def _fail(code: int, message: str) -> int:
     sys.stderr.write(f"{message}\n")
     return code
-
-
-def read_at_most(path: Path, limit: int) -> bytes:
-    """Return the file's bytes, or somewhat more than ``limit`` of them: enough for the verifier to refuse it."""
-    data = bytearray()
-    with path.open("rb") as file:
-        while len(data) <= limit and (block := file.read(2**20)):
-            data += block
-    return bytes(data)
 
 
 if __name__ == "__main__":

@@ -28,11 +28,12 @@ MAX_HEADER_BYTES = 2**26
 
 
 def open_certificate(
-    subject_bytes: bytes, certificate_bytes: bytes, subject: str, formats: Collection[str]
+    subject_bytes: bytes, certificate_bytes: bytes, subject: str, formats: Collection[str], keys: str = "claim evidence"
 ) -> tuple[dict[str, Any], bytes]:
     """Return the header and the body of a certificate of one of these formats about a graph or a sequence.
 
-    The digest of the subject, which the header names under the key ``subject``, is compared by :func:`require_about`.
+    The header has exactly these keys beside ``format`` and ``subject``. The digest of the subject, which the header
+    names under the key ``subject``, is compared by :func:`require_about`.
 
     Raises
     ------
@@ -47,7 +48,7 @@ def open_certificate(
         raise MalformedCertificate(f"a certificate has at most {MAX_CERTIFICATE_BYTES} bytes")
     header, body = split_header(certificate_bytes)
     document = parse(header, MalformedCertificate, "the certificate")
-    document = require_keys(document, "the certificate", f"format {subject} claim evidence")
+    document = require_keys(document, "the certificate", f"format {subject} {keys}")
     found = document["format"]
     if type(found) is not str or found not in formats:
         raise MalformedCertificate(f"the format is {' or '.join(map(repr, formats))}, not {shown(found)}")

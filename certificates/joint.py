@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import secrets
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ from typing import Any
 
 from certificates.envelope import kind_of, open_certificate, require_about, require_keys, shown
 from certificates.errors import MalformedCertificate, MalformedGraph, RejectedCertificate
-from certificates.graph import Label, digest, encode_graph, label_key, valid_labels
+from certificates.graph import Label, encode_graph, label_key, valid_labels
 from certificates.strict_json import parse
 from certificates.verification import VerifiedClaim, verify
 
@@ -25,6 +26,7 @@ __all__ = [
     "FORMAT",
     "MAX_SEQUENCE_BYTES",
     "MAX_STEPS",
+    "MAX_UNION_SIZE",
     "MAX_VALUE",
     "SEQUENCE_FORMAT",
     "VerifiedJointClaim",
@@ -38,6 +40,13 @@ FORMAT = "robustness/joint-certificate/1"
 #: Bytes and stored steps of a sequence that are read at most; a certificate is limited like an ordinary one.
 MAX_SEQUENCE_BYTES = 2**28
 MAX_STEPS = 2**20
+
+#: Nodes and arcs of all unions together that are handed to the ordinary kernel at most.
+MAX_UNION_SIZE = 2**26
+
+#: Unions are compared by sums of secret numbers of so many bits, one for each arc. Nobody who wrote a certificate knew
+#: them, so two different unions are taken for the same with a probability of 2**-256.
+_SECRET_BITS = 256
 
 #: The greatest r and the longest window that a claim may have.
 MAX_VALUE = 2**31
@@ -163,19 +172,54 @@ class _Sequence:
         stored = len(self.steps)
         return range(max(0, stored - length + 1)) if self.period is None else range(stored)
 
-    def unions(self, length: int, starts: range) -> Iterator[bytes]:
-        """Yield the canonical graph of the union of each window; ``starts`` are consecutive.
+    def unions(self, length: int, starts: range) -> Iterator[_Union]:
+        """Yield the union of each window, which is one object that moves on; ``starts`` are consecutive.
 
         In a sequence with a period a window of as many steps as are stored contains a whole period, from every start.
         A longer one has no other arcs, so it is never walked through.
         """
         length = min(length, len(self.steps))
-        counts = Counter(arc for k in range(starts.start, starts.start + length) for arc in self.step(k))
+        union = _Union(self.labels)
+        for k in range(starts.start, starts.start + length):
+            union.add(self.step(k))
         for start in starts:
-            yield encode_graph(self.labels, sorted(arc for arc, times in counts.items() if times))
+            yield union
             if start + 1 in starts:
-                counts.update(self.step(start + length))
-                counts.subtract(self.step(start))
+                union.add(self.step(start + length))
+                union.drop(self.step(start))
+
+
+class _Union:
+    """The union of some steps: how often each arc is in them, and a fingerprint of the arcs that are."""
+
+    def __init__(self, labels: Sequence[Label]) -> None:
+        self._labels = labels
+        self._times: Counter[_Arc] = Counter()
+        self._secrets: dict[_Arc, int] = {}
+        self.fingerprint = 0
+
+    def add(self, arcs: Iterable[_Arc]) -> None:
+        """Take the arcs of one more step."""
+        for arc in arcs:
+            self._times[arc] += 1
+            if self._times[arc] == 1:
+                self.fingerprint ^= self._secrets.setdefault(arc, secrets.randbits(_SECRET_BITS))
+
+    def drop(self, arcs: Iterable[_Arc]) -> None:
+        """Give up the arcs of a step that was taken."""
+        for arc in arcs:
+            self._times[arc] -= 1
+            if not self._times[arc]:
+                del self._times[arc]
+                self.fingerprint ^= self._secrets[arc]
+
+    def size(self) -> int:
+        """Return the number of nodes and arcs."""
+        return len(self._labels) + len(self._times)
+
+    def canonical(self) -> bytes:
+        """Return the canonical graph."""
+        return encode_graph(self._labels, sorted(self._times))
 
 
 def _decode_sequence(data: bytes) -> _Sequence:
@@ -256,15 +300,20 @@ class _Check:
         if len(named) != len(starts):
             raise RejectedCertificate(f"there are {len(starts)} windows, not {len(named)}", "windows")
         ends = list(accumulate(lengths))
-        proven: dict[int, VerifiedClaim] = {}
+        proven: dict[int, tuple[VerifiedClaim, int]] = {}
+        size = 0
         for start, i, union in zip(starts, named, self.sequence.unions(self.length, starts), strict=True):
             if i not in proven:
-                proven[i] = self._verified(start, union, body[ends[i] - lengths[i] : ends[i]], "robust")
-            elif digest(union) != proven[i].sha256:
+                size += union.size()
+                if size > MAX_UNION_SIZE:
+                    raise MalformedCertificate(f"the unions have more than {MAX_UNION_SIZE} nodes and arcs together")
+                certificate = body[ends[i] - lengths[i] : ends[i]]
+                proven[i] = self._verified(start, union, certificate, "robust"), union.fingerprint
+            elif union.fingerprint != proven[i][1]:
                 raise RejectedCertificate(f"window {start}: its union is not the graph of certificate {i}", "windows")
         if len(proven) < len(lengths):
             raise RejectedCertificate(f"{len(lengths) - len(proven)} certificates are named for no window", "windows")
-        return list(proven.values())
+        return [claim for claim, _ in proven.values()]
 
     def violation(self, start: Any, body: bytes) -> list[VerifiedClaim]:
         """Check that the body proves the union of the window at ``start`` not robust."""
@@ -283,10 +332,10 @@ class _Check:
             raise RejectedCertificate(f"there are windows of {self.length} steps", "windows")
         return []
 
-    def _verified(self, start: int, union: bytes, certificate: bytes, verdict: str) -> VerifiedClaim:
+    def _verified(self, start: int, union: _Union, certificate: bytes, verdict: str) -> VerifiedClaim:
         """Return what the ordinary kernel proves about the union, which must be the joint claim's own verdict."""
         try:
-            claim = verify(union, certificate)
+            claim = verify(union.canonical(), certificate)
         except RejectedCertificate as problem:
             raise RejectedCertificate(f"window {start}: {problem}", problem.code) from None
         except MalformedCertificate as problem:

@@ -15,23 +15,23 @@ certificate holds whole, for any solver.
 
 from __future__ import annotations
 
-import json
+from collections import Counter
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from certificates.envelope import MAX_CERTIFICATE_BYTES, id_set, require_keys, shown, split_header
-from certificates.errors import MalformedCertificate, Misuse, RejectedCertificate
+from certificates.envelope import id_set, open_certificate, require_about, require_keys
+from certificates.errors import MalformedCertificate, RejectedCertificate
 from certificates.graph import CanonicalGraph, decode_graph, digest, encode_graph
-from certificates.strict_json import parse
-from certificates.tolerance import FORMAT as TOLERANCE_FORMAT
-from certificates.tolerance import encode, verify_tolerance
-from certificates.verification import FORMAT as ROBUSTNESS_FORMAT
-from certificates.verification import verify
+from certificates.tolerance import check_sets, verify_tolerance
+from certificates.verification import check_violation, verify
 
-__all__ = ["FORMAT", "VerifiedMendingClaim", "verify_mending"]
+__all__ = ["FORMAT", "MAX_LOOKS", "VerifiedMendingClaim", "verify_mending"]
 
 FORMAT = "robustness/mending-certificate/1"
+
+#: Pairs times nodes and arcs of the graph: at most so many are looked at.
+MAX_LOOKS = 2**32
 
 #: No number of a certificate is larger.
 _MOST = 2**53
@@ -90,33 +90,26 @@ def verify_mending(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedMend
     RejectedCertificate
         When the certificate does not prove its claim about this graph.
     """
-    if not all(isinstance(data, bytes) for data in (graph_bytes, certificate_bytes)):
-        raise Misuse("verify_mending takes two bytes objects: the graph and the certificate")
-    if len(certificate_bytes) > MAX_CERTIFICATE_BYTES:
-        raise MalformedCertificate(f"a certificate has at most {MAX_CERTIFICATE_BYTES} bytes")
-    header, body = split_header(certificate_bytes)
-    document = parse(header, MalformedCertificate, "the certificate")
-    document = require_keys(document, "the certificate", "format graph claim actions pairs lengths")
-    if document["format"] != FORMAT:
-        raise MalformedCertificate(f"the format is {FORMAT!r}, not {shown(document['format'])}")
+    keys = "claim actions pairs lengths"
+    document, body = open_certificate(graph_bytes, certificate_bytes, "graph", [FORMAT], keys)
     claim = require_keys(document["claim"], "the claim", "parts cost least")
     graph = decode_graph(graph_bytes)
-    if document["graph"] != graph.sha256:
-        raise RejectedCertificate(f"the certificate is about another graph: this one has SHA-256 {graph.sha256}")
-    parts = _list(claim["parts"], "parts")
-    words = [_words(part) for part in parts]
+    require_about(document, "graph", graph.sha256)
+    parts, pairs = _list(claim["parts"], "parts"), _list(document["pairs"], "pairs")
+    words = [_words(part, graph.n) for part in parts]
+    if len(pairs) * (graph.n + graph.arc_count) > MAX_LOOKS:
+        raise MalformedCertificate(f"{len(pairs)} pairs take more than {MAX_LOOKS} looks at nodes and arcs")
     for name in ("cost", "least"):
         if claim[name] is not None:
             _number(claim[name], name)
     if claim["cost"] is not None and (claim["least"] is None or claim["least"] > claim["cost"]):
         raise RejectedCertificate("the chosen links cost less than the least cost that is claimed")
     mended, links = _check_choice(graph, document["actions"], claim["cost"])
-    before = encode(graph)
-    for pair in _list(document["pairs"], "pairs"):
-        _check_pair(graph, before, parts, pair)
+    for pair in pairs:
+        _check_pair(graph, parts, pair)
     tree_nodes = _check_parts(mended, parts, document["lengths"], body)
     return VerifiedMendingClaim(
-        " and ".join(words) or "anything", claim["cost"], claim["least"], links, len(document["pairs"]),
+        " and ".join(words) or "anything", claim["cost"], claim["least"], links, len(pairs),
         graph.sha256, graph.n, graph.arc_count, "" if mended is None else digest(mended), tree_nodes,
     )  # fmt: skip
 
@@ -144,8 +137,9 @@ def _check_choice(graph: CanonicalGraph, actions: Any, cost: int | None) -> tupl
     if sum(links[a][2] for a in chosen) != cost:
         raise RejectedCertificate(f"the chosen links do not cost {cost}")
     added = {arc for a in chosen for arc in brought[a]}
+    gains = Counter(head for _, head in added)
     for i, cap in enumerate(most or ()):
-        if sum(head == i for _, head in added) > cap:
+        if gains[i] > cap:
             raise RejectedCertificate(f"node {i} gains more than the {cap} in-neighbours that it may")
     return encode_graph(graph.labels, sorted(arcs | added)), len(chosen)
 
@@ -168,25 +162,18 @@ def _links(
     return links, brought
 
 
-def _check_pair(graph: CanonicalGraph, before: bytes, parts: list[Part], pair: Any) -> None:
-    """The sets violate their part in the graph as it is: a certificate of that, made from them, is accepted."""
+def _check_pair(graph: CanonicalGraph, parts: list[Part], pair: Any) -> None:
+    """The sets violate their part in the graph as it is."""
     if not isinstance(pair, list) or len(pair) != 4 or type(pair[0]) is not int or not 0 <= pair[0] < len(parts):
         raise MalformedCertificate("a pair is [part, M, S1, S2]")
     part = parts[pair[0]]
-    M, S1, S2 = (id_set(ids, graph.n, name) for ids, name in zip(pair[1:], ("M", "S1", "S2"), strict=True))
+    sets = dict(zip(("M", "S1", "S2"), pair[1:], strict=True))
     if "r" in part:
-        if M:
+        if sets["M"] != []:
             raise MalformedCertificate("M is empty in a pair about (r,s)-robustness")
-        claim = {"property": "rs-robust", **part, "verdict": "not-robust"}
-        verify(before, _line(ROBUSTNESS_FORMAT, graph, claim, {"kind": "violation", "S1": S1, "S2": S2}))
+        check_violation(graph, part["r"], part["s"], sets)
     else:
-        sets = {"kind": "sets", "M": M, "S1": S1, "S2": S2}
-        verify_tolerance(before, _line(TOLERANCE_FORMAT, graph, {**part, "verdict": "apart"}, sets))
-
-
-def _line(name: str, graph: CanonicalGraph, claim: dict[str, Any], evidence: dict[str, Any]) -> bytes:
-    document = {"format": name, "graph": graph.sha256, "claim": claim, "evidence": evidence}
-    return json.dumps(document).encode("ascii") + b"\n"
+        check_sets(graph, part["f"], part["faces"], part["bound"], sets)
 
 
 def _check_parts(mended: bytes | None, parts: list[Part], lengths: Any, body: bytes) -> int:
@@ -217,13 +204,15 @@ def _check_parts(mended: bytes | None, parts: list[Part], lengths: Any, body: by
     return tree_nodes
 
 
-def _words(part: Any) -> str:
+def _words(part: Any, n: int) -> str:
     """Return a part in words, after its form was checked."""
     if isinstance(part, dict) and "r" in part:
         part = require_keys(part, "a part", "r s")
         for name in ("r", "s"):
             if _number(part[name], name) < 1:
                 raise MalformedCertificate(f"{name} of a part is at least 1")
+        if part["s"] > n:
+            raise MalformedCertificate(f"s of a part lies in 1..n = 1..{n}, not {part['s']}")
         return f"({part['r']},{part['s']})-robust"
     part = require_keys(part, "a part", "f faces bound")
     _number(part["f"], "f")

@@ -10,9 +10,7 @@ What such sets mean for consensus is no business of the kernel. docs/certificate
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import combinations
 from typing import Any
 
 from certificates.envelope import id_set, kind_of, open_certificate, require_about, require_keys, shown
@@ -21,7 +19,14 @@ from certificates.graph import CanonicalGraph, decode_graph, encode_graph
 from certificates.separation import check_separation
 from certificates.verification import verify
 
-__all__ = ["FORMAT", "FORMATS", "FORMAT_WITH_REFUTATIONS", "VerifiedToleranceClaim", "verify_tolerance", "without"]
+__all__ = [
+    "FORMAT",
+    "FORMATS",
+    "FORMAT_WITH_REFUTATIONS",
+    "VerifiedToleranceClaim",
+    "check_sets",
+    "verify_tolerance",
+]
 
 #: The second has one kind of evidence more, "refutation"; whatever the first accepts, the second does too.
 FORMAT = "robustness/tolerance-certificate/1"
@@ -44,9 +49,9 @@ class VerifiedToleranceClaim:
     sha256: str
     nodes: int
     arcs: int
-    #: Ordinary certificates that were verified.
+    #: Ordinary certificates that were verified: one for evidence of kind "robust".
     certificates: int = 0
-    #: Nodes of search trees that were replayed, in them or in the certificate's own refutation.
+    #: Nodes of search trees that were replayed, in it or in the certificate's own refutation.
     tree_nodes: int = 0
 
     def __str__(self) -> str:
@@ -86,15 +91,12 @@ def verify_tolerance(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedTo
     used = tree_nodes = 0
     match verdict, kind:
         case "apart", "sets":
-            _check_sets(graph, f, faces, bound, require_keys(evidence, "the evidence", "kind M S1 S2"))
+            check_sets(graph, f, faces, bound, require_keys(evidence, "the evidence", "kind M S1 S2"))
             if body:
                 raise MalformedCertificate(f"{len(body)} bytes follow the header, but sets have no body")
         case "together", "robust":
             require_keys(evidence, "the evidence", "kind")
-            used, tree_nodes = 1, _check_robust(encode(graph), body, 2 * f + 1)
-        case "together", "removals":
-            lengths = require_keys(evidence, "the evidence", "kind lengths")["lengths"]
-            used, tree_nodes = _check_removals(graph, f, (faces, bound), lengths, body)
+            used, tree_nodes = 1, _check_robust(_canonical(graph), body, 2 * f + 1)
         case "together", "refutation" if document["format"] == FORMAT_WITH_REFUTATIONS:
             require_keys(evidence, "the evidence", "kind")
             tree_nodes = check_separation(graph, f, faces, bound, body)
@@ -118,7 +120,7 @@ def _claim(claim: dict[str, Any]) -> tuple[int, int, str, str]:
     return f, faces, bound, verdict
 
 
-def _check_sets(graph: CanonicalGraph, f: int, faces: int, bound: str, evidence: dict[str, Any]) -> None:
+def check_sets(graph: CanonicalGraph, f: int, faces: int, bound: str, evidence: dict[str, Any]) -> None:
     """The definition, clause by clause."""
     M, S1, S2 = (set(id_set(evidence[name], graph.n, name)) for name in ("M", "S1", "S2"))
     if S1 & S2 or not S1 - M or not S2 - M:
@@ -152,54 +154,6 @@ def _check_robust(graph_bytes: bytes, certificate: bytes, r: int) -> int:
     return claim.tree_nodes
 
 
-def _check_removals(graph: CanonicalGraph, f: int, kind: tuple[int, str], lengths: Any, body: bytes) -> tuple[int, int]:
-    """On n >= f + 2 nodes there is a trap in total iff for some M of exactly f nodes ``G - M`` is not (f+1)-robust.
-
-    Of a trap with fewer, move nodes into M: from outside all three sets first, then from the larger of S1 and S2. The
-    ordinary certificates are for the sets M in lexicographic order.
-    """
-    if kind != (2, "total"):
-        raise MalformedCertificate("removals are evidence for two faces in total only")
-    if not isinstance(lengths, list) or not all(type(each) is int and each > 0 for each in lengths):
-        raise MalformedCertificate("lengths is a list of positive integers")
-    if sum(lengths) != len(body):
-        raise MalformedCertificate(f"the lengths add up to {sum(lengths)} bytes, but {len(body)} follow the header")
-    if graph.n < f + 2:
-        raise RejectedCertificate(f"removals need at least f + 2 = {f + 2} nodes", "removals")
-    if not _counts_subsets(len(lengths), graph.n, f):
-        raise RejectedCertificate(
-            f"{len(lengths)} certificates are not one for every set of {f} of {graph.n} nodes", "removals"
-        )
-    place = tree_nodes = 0
-    for removed, length in zip(combinations(range(graph.n), f), lengths, strict=True):
-        tree_nodes += _check_robust(without(graph, removed), body[place : place + length], f + 1)
-        place += length
-    return len(lengths), tree_nodes
-
-
-def _counts_subsets(number: int, n: int, f: int) -> bool:
-    """Return whether ``number`` is n over f. The partial products only grow, so none is computed far beyond it."""
-    subsets = 1
-    for k in range(min(f, n - f)):
-        subsets = subsets * (n - k) // (k + 1)
-        if subsets > number:
-            return False
-    return subsets == number
-
-
-def encode(graph: CanonicalGraph) -> bytes:
+def _canonical(graph: CanonicalGraph) -> bytes:
     """Return the canonical bytes of a decoded graph."""
-    return without(graph, ())
-
-
-def without(graph: CanonicalGraph, removed: tuple[int, ...]) -> bytes:
-    """Return the canonical bytes of the graph without some nodes; the others keep their labels and their order."""
-    gone = set(removed)
-    kept = [i for i in range(graph.n) if i not in gone]
-    place = {i: k for k, i in enumerate(kept)}
-    return encode_graph([graph.labels[i] for i in kept], sorted(_arcs(graph, place)))
-
-
-def _arcs(graph: CanonicalGraph, place: dict[int, int]) -> Iterator[tuple[int, int]]:
-    for i, k in place.items():
-        yield from ((place[j], k) for j in graph.hears[i] if j in place)
+    return encode_graph(graph.labels, sorted((j, i) for i, heard in enumerate(graph.hears) for j in heard))

@@ -11,7 +11,7 @@ from certificates.errors import MalformedCertificate, RejectedCertificate
 from certificates.graph import CanonicalGraph, decode_graph
 from certificates.refutation import check_refutation
 
-__all__ = ["FORMAT", "VerifiedClaim", "verify"]
+__all__ = ["FORMAT", "VerifiedClaim", "check_violation", "verify"]
 
 FORMAT = "robustness/certificate/1"
 
@@ -72,7 +72,7 @@ def verify(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedClaim:
     tree_nodes = 0
     match verdict, kind:
         case "not-robust", "violation":
-            _check_violation(graph, r, s, require_keys(evidence, "the evidence", "kind S1 S2"))
+            check_violation(graph, r, s, require_keys(evidence, "the evidence", "kind S1 S2"))
         case "robust", "degree" | "refutation":
             tree_nodes = _check_direct(graph, r, s, require_keys(evidence, "the evidence", "kind"), body)
         case "robust", "growth":
@@ -96,13 +96,13 @@ def _claim_numbers(claim: dict[str, Any], n: int) -> tuple[int, int]:
         raise MalformedCertificate(f"the property is 'rs-robust', not {shown(claim['property'])}")
     r, s = claim["r"], claim["s"]
     if type(r) is not int or type(s) is not int or not 1 <= r <= 2**31:
-        raise MalformedCertificate("r and s are integers and r is at least 1")
+        raise MalformedCertificate("r and s are integers, and r lies in 1..2147483648")
     if not 1 <= s <= n:
         raise MalformedCertificate(f"s lies in 1..n = 1..{n}, not {s}")
     return r, s
 
 
-def _check_violation(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any]) -> None:
+def check_violation(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any]) -> None:
     """The definition: S1 and S2 are nonempty and disjoint, neither is all r-reachable, fewer than s nodes are."""
     pair = [set(id_set(evidence[name], graph.n, name)) for name in ("S1", "S2")]
     if not pair[0] or not pair[1] or pair[0] & pair[1]:

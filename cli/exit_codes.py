@@ -58,7 +58,7 @@ class ExitCode(enum.IntEnum):
         match problem:
             case KeyboardInterrupt():
                 return cls.INTERRUPTED
-            case Undecided() | Overrun():
+            case Undecided() | Overrun() | MemoryError():
                 return cls.UNDECIDED
             case RejectedCertificate():
                 return cls.REFUTED

@@ -113,6 +113,8 @@ def _report(console: Console, problem: BaseException) -> ExitCode:
         case ExitCode.INTERRUPTED:
             where = f" at {problem}" if str(problem) else ""
             message = f"interrupted{where}: nothing is claimed"
+        case _ if isinstance(problem, MemoryError):
+            message = "error: out of memory: nothing is claimed"
         case ExitCode.INTERNAL_ERROR:
             hint = "" if console.is_verbose else "; -v shows where"
             message = f"internal error, not a verdict: {type(problem).__name__}: {problem}{hint}"

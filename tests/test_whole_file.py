@@ -16,6 +16,9 @@ WHEEL = str(ROOT / "tests" / "data" / "square.json")
 
 posix = pytest.mark.skipif(os.name != "posix", reason="named pipes")
 
+#: What the kernel's own command reads.
+KERNEL_READERS = ["verify PIPE OUT", f"verify {WHEEL} PIPE", "verify-joint PIPE OUT", f"verify-tolerance {WHEEL} PIPE"]
+
 #: Every place where a command reads a file that it is given; PIPE is a named pipe that nobody writes to.
 READERS = [
     "check PIPE",
@@ -49,6 +52,18 @@ def test_a_pipe_that_nobody_writes_to_is_refused_at_once(command: str, tmp_path:
     )
     assert done.returncode in (2, 3), (command, done.stdout, done.stderr)
     assert "pipe" in done.stderr + done.stdout
+
+
+@posix
+@pytest.mark.parametrize("command", KERNEL_READERS)
+def test_the_kernel_waits_for_none_either(command: str, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.json")
+    (tmp_path / "out").write_text("{}\n")
+    arguments = command.replace("PIPE", str(tmp_path / "pipe.json")).replace("OUT", str(tmp_path / "out")).split()
+    kernel = [sys.executable, "-m", "certificates", *arguments]
+    done = subprocess.run(kernel, cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout) == (3, "")
+    assert "is a pipe that nobody writes to" in done.stderr
 
 
 @posix

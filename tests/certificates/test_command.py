@@ -165,3 +165,21 @@ def test_on_a_bare_python(name: str, code: int, files: Path) -> None:
     )
     assert (done.returncode, bool(done.stdout)) == (code, code == 0), done.stderr
     assert done.stderr.endswith("imported: []")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="a limit on memory")
+@pytest.mark.parametrize("text", ["[" + "[]," * 4_000_000 + "[]]", '{"a":"' + "x" * 80_000_000 + '"}'])
+def test_a_file_that_does_not_fit_into_memory_is_malformed(text: str, tmp_path: Path) -> None:
+    """Whatever has no room, the words are few and the code is promised."""
+    (tmp_path / "graph.json").write_text(text)
+    (tmp_path / "proof.cert").write_bytes(certificate(WHEEL, 2, 1, evidence={"kind": "degree"}))
+    limited = (
+        "import resource, sys; from certificates.__main__ import main;"
+        "resource.setrlimit(resource.RLIMIT_AS, (150 * 2**20,) * 2); sys.exit(main(sys.argv[1:]))"
+    )
+    arguments = ["verify", str(tmp_path / "graph.json"), str(tmp_path / "proof.cert")]
+    done = subprocess.run(
+        [sys.executable, "-c", limited, *arguments], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout) == (3, "")
+    assert done.stderr == "malformed: the files do not fit into memory\n"

@@ -23,6 +23,7 @@ from certificates import (
     verify_joint,
 )
 from certificates import __main__ as program
+from certificates.graph import digest
 from certificates.joint import VerifiedJointClaim, encode_sequence
 from robustness import TimeVaryingGraph
 from robustness.decision.certification import certify
@@ -205,7 +206,7 @@ def test_another_sequence() -> None:
         with pytest.raises(RejectedCertificate, match="another sequence"):
             verify_joint(canonical_sequence(other), ROBUST)
         header, body = parts(ROBUST)
-        header["sequence"] = joint.digest(canonical_sequence(other))
+        header["sequence"] = digest(canonical_sequence(other))
         claim = _verdict(other, joined(header, body))
         assert claim is None or holds(other, 2, 1, 3)
 
@@ -229,7 +230,7 @@ class TestTheMapOfWindows:
         bad = TimeVaryingGraph.from_arcs(range(5), [STARS[0] + STARS[1] + STARS[2], STARS[0]], None)
         header, body = parts(proof(good, 2, window=1))
         assert header["evidence"]["unions"] == [0, 0]
-        header["sequence"] = joint.digest(canonical_sequence(bad))
+        header["sequence"] = digest(canonical_sequence(bad))
         with pytest.raises(RejectedCertificate, match="window 1: its union is not the graph of certificate 0"):
             verify_joint(canonical_sequence(bad), joined(header, body))
 
@@ -362,9 +363,30 @@ def test_malformed_sequences(data: bytes, message: str) -> None:
         verify_joint(data, ROBUST)
 
 
+def test_windows_are_compared_by_what_changes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A union is put together for its certificate alone: 20,000 windows of one union take one, not 20,000."""
+    everybody = [(i, j) for i in range(5) for j in range(5) if i != j]
+    two = [everybody[::2], everybody[1::2]]
+    header, body = parts(proof(TimeVaryingGraph.from_arcs(range(5), two, 2), 3, window=2))
+    put_together = []
+    encode = joint.encode_graph
+
+    def counting(labels: Sequence[Any], arcs: list[tuple[int, int]]) -> bytes:
+        put_together.append(len(arcs))
+        return encode(labels, arcs)
+
+    monkeypatch.setattr(joint, "encode_graph", counting)
+    data = canonical_sequence(TimeVaryingGraph.from_arcs(range(5), two * 10_000, None))
+    header["evidence"]["unions"] = [0] * 19_999
+    header["sequence"] = digest(data)
+    assert verify_joint(data, json.dumps(header).encode() + b"\n" + body).certificates == 1
+    assert put_together == [20]
+
+
 def test_limits(monkeypatch: pytest.MonkeyPatch) -> None:
     for name, message in (
         ("MAX_STEPS", "steps is a list of 1..4"),
+        ("MAX_UNION_SIZE", "the unions have more than 4 nodes and arcs together"),
         ("MAX_SEQUENCE_BYTES", "at most 4 bytes"),
         ("MAX_CERTIFICATE_BYTES", "at most 4 bytes"),
     ):

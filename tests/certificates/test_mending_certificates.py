@@ -258,7 +258,7 @@ def test_mutations_never_prove_more() -> None:
 def test_misuse_and_size(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(Misuse):
         verify_mending("graph", b"")  # type: ignore[arg-type]
-    monkeypatch.setattr("certificates.mending.MAX_CERTIFICATE_BYTES", 10)
+    monkeypatch.setattr("certificates.envelope.MAX_CERTIFICATE_BYTES", 10)
     with pytest.raises(MalformedCertificate, match="at most"):
         verify_mending(PATH.canonical_bytes(), made())
 
@@ -269,3 +269,13 @@ def test_one_way_links_of_a_directed_graph() -> None:
     assert data is not None
     assert confirm_least(ring.canonical_bytes(), data).verdict is LeastVerdict.CONFIRMED
     assert isinstance(ring, Digraph)
+
+
+def test_work_is_limited(monkeypatch: pytest.MonkeyPatch) -> None:
+    network = nx.cycle_graph(6)
+    data = certify_mending(rb.mend(network, 2))
+    graph = as_digraph(network).canonical_bytes()
+    verify_mending(graph, data)
+    monkeypatch.setattr("certificates.mending.MAX_LOOKS", 17)
+    with pytest.raises(MalformedCertificate, match="pairs take more than 17 looks at nodes and arcs"):
+        verify_mending(graph, data)

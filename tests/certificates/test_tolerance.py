@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from itertools import combinations, product
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +13,7 @@ import pytest
 import robustness as rb
 from certificates import MalformedCertificate, Misuse, RejectedCertificate, verify_tolerance
 from certificates.__main__ import main
-from certificates.graph import decode_graph
-from certificates.tolerance import FORMAT, without
+from certificates.tolerance import FORMAT
 from tests.oracles import graphs
 from tests.tolerance.brute_force import has_trap
 
@@ -36,16 +35,6 @@ def ordinary(graph: rb.Digraph, r: int) -> bytes:
     certificate = rb.certify(graph, r).certificate
     assert certificate is not None
     return certificate
-
-
-def removals(graph: rb.Digraph, f: int, r: int | None = None) -> list[bytes]:
-    bare = decode_graph(graph.canonical_bytes())
-    parts = []
-    for gone in combinations(range(graph.n), f):
-        rest = json.loads(without(bare, gone))
-        labels, arcs = rest["labels"], [(rest["labels"][u], rest["labels"][v]) for u, v in rest["arcs"]]
-        parts.append(ordinary(rb.Digraph(labels, arcs), r or f + 1))
-    return parts
 
 
 class TestAccepted:
@@ -70,13 +59,6 @@ class TestAccepted:
         proved = verify_tolerance(COMPLETE.canonical_bytes(), data)
         assert (proved.verdict, proved.certificates) == ("together", 1)
         assert "has no" in str(proved)
-
-    def test_removals(self) -> None:
-        graph = rb.Digraph.from_networkx(nx.complete_graph(8))
-        parts = removals(graph, 2)
-        evidence = {"kind": "removals", "lengths": [len(part) for part in parts]}
-        data = make(graph, claim(2, verdict="together"), evidence, b"".join(parts))
-        assert verify_tolerance(graph.canonical_bytes(), data).certificates == 28
 
 
 def test_sets_are_accepted_exactly_when_they_are_a_trap() -> None:
@@ -130,42 +112,6 @@ class TestRejected:
         with pytest.raises(RejectedCertificate, match="another claim"):
             verify_tolerance(WHEEL.canonical_bytes(), data)
 
-    def test_removals_of_another_graph_in_another_order_or_too_few(self) -> None:
-        star = rb.Digraph.from_networkx(nx.compose(nx.complete_graph(7), nx.path_graph(7)))
-        lopsided = nx.complete_graph(7)
-        lopsided.remove_edge(0, 1)
-        graph = rb.Digraph.from_networkx(lopsided)
-        parts = removals(graph, 1)
-        lengths = [len(part) for part in parts]
-        good = make(graph, claim(verdict="together"), {"kind": "removals", "lengths": lengths}, b"".join(parts))
-        assert verify_tolerance(graph.canonical_bytes(), good).certificates == 7
-        turned = [*parts[1:], parts[0]]
-        for data, message in (
-            ((lengths[1:] + lengths[:1], b"".join(turned)), "another graph"),
-            ((lengths[:-1], b"".join(parts[:-1])), "6 certificates are not one for every set of 1 of 7 nodes"),
-        ):
-            bad = make(graph, claim(verdict="together"), {"kind": "removals", "lengths": data[0]}, data[1])
-            with pytest.raises(RejectedCertificate, match=message):
-                verify_tolerance(graph.canonical_bytes(), bad)
-        weak = removals(star, 1, r=1)
-        bad = make(
-            star, claim(verdict="together"), {"kind": "removals", "lengths": [len(p) for p in weak]}, b"".join(weak)
-        )
-        with pytest.raises(RejectedCertificate, match="another claim than 2-robustness"):
-            verify_tolerance(star.canonical_bytes(), bad)
-
-    def test_more_removals_than_could_be_counted(self) -> None:
-        """8000 of 16000 nodes: a number of 4800 digits, which is neither computed nor printed."""
-        graph = rb.Digraph(range(16_000), [])
-        data = make(graph, claim(8_000, verdict="together"), {"kind": "removals", "lengths": [1]}, b"x")
-        with pytest.raises(RejectedCertificate, match="1 certificates are not one for every set of 8000 of 16000"):
-            verify_tolerance(graph.canonical_bytes(), data)
-
-    def test_removals_on_too_few_nodes(self) -> None:
-        data = make(WHEEL, claim(4, verdict="together"), {"kind": "removals", "lengths": []})
-        with pytest.raises(RejectedCertificate, match=r"at least f \+ 2 = 6"):
-            verify_tolerance(WHEEL.canonical_bytes(), data)
-
 
 class TestMalformed:
     @pytest.mark.parametrize(
@@ -191,11 +137,6 @@ class TestMalformed:
             (claim(), TRAP | {"M": [5]}, b"", {}, "ids in 0..4"),
             (claim(), TRAP | {"S3": []}, b"", {}, "exactly the keys"),
             (claim(verdict="together"), {"kind": "robust"}, b"", {}, "one line of JSON"),
-            (claim(faces=1, verdict="together"), {"kind": "removals", "lengths": []}, b"", {}, "two faces in total"),
-            (claim(1, 2, "local", "together"), {"kind": "removals", "lengths": []}, b"", {}, "two faces in total"),
-            (claim(verdict="together"), {"kind": "removals", "lengths": 1}, b"", {}, "positive integers"),
-            (claim(verdict="together"), {"kind": "removals", "lengths": [0]}, b"", {}, "positive integers"),
-            (claim(verdict="together"), {"kind": "removals", "lengths": [2]}, b"x", {}, "add up to 2 bytes, but 1"),
         ],
     )
     def test_one_thing_wrong(
