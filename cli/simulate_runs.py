@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 __all__ = ["node_named", "run_scenario"]
 
-#: Steps for each exact search of the worst attack, so that no clock chooses the adversary: about half a second.
-_ATTACK_STEPS = 500_000_000
+#: Steps for each exact search of the worst attack, so that no clock chooses the adversary: about a tenth of a second.
+_ATTACK_STEPS = 100_000_000
 
 
 def run_scenario(console: Console, query: Query, asked: Simulation) -> ExitCode:
