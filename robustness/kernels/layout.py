@@ -23,6 +23,9 @@ CLOSED, FOUND, PAUSED, FLUSH, GROW, DONATED, STUCK = range(7)
 #: Look-ahead of the subset search tries this many nodes on one side: see docs/adr/0002.
 TRIED = 8
 
+#: That of the trap search, where probes cost as much and tell less: see docs/design-traps.md.
+TRAPS_TRIED = 4
+
 # Rows of a state of the trap search (robustness.kernels.trap_rules), its number of rows, and its kinds of literals.
 TRAP_P, TRAP_Q, TRAP_F, TRAP_T, TRAP_Z, TRAP_ROWS = 0, 2, 4, 6, 8, 9
 NORMAL, MALICIOUS = 0, 1

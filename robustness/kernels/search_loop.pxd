@@ -1,6 +1,7 @@
 cimport cython
 from robustness.kernels.words cimport bit_of, SOURCES, count, first, number, word
-from robustness.kernels.search_rules cimport Rules, assume, copy_state, core, varint
+from robustness.kernels.search_rules cimport Rules, assume
+from robustness.kernels.shared cimport copy_state, core, most_promising, varint
 
 cdef int C, P, F, T, ROOT, BRANCH, SATISFIED, MEMBER, PENDING, SYMMETRIC, GIVEN, NODES, FAILED, PROBES
 cdef int CLOSED, FOUND, PAUSED, FLUSH, GROW, DONATED, STUCK, TRIED, _PAIR, _NOTHING, _CONTRADICTION
@@ -27,11 +28,6 @@ cdef class Search:
 
     @cython.locals(total=number, w=number, side=number)
     cdef number _weight(self, word[:, ::1] state) noexcept nogil
-
-    @cython.locals(
-        hears=word[:, ::1], margin=number[:, ::1], words=number, value=number[::1], chosen=number[::1], found=number,
-        w=number, x=number, v=number, worth=number, place=number, rest=word)
-    cdef number _most_promising(self, word[:, ::1] state, number side) noexcept nogil
 
     @cython.locals(kept=number[:, ::1], left=number)
     cdef bint _probe(self, word[:, ::1] state, number side, number v) noexcept nogil

@@ -21,7 +21,8 @@ except ImportError:
     from robustness.kernels import uncompiled as cython
 
 if not cython.compiled:
-    from robustness.kernels.search_rules import assume, copy_state, core, varint
+    from robustness.kernels.search_rules import assume
+    from robustness.kernels.shared import copy_state, core, most_promising, varint
     from robustness.kernels.words import bit_of, count, first
 
 __all__ = ["Search"]
@@ -122,37 +123,6 @@ class Search:
                 total += count(state[P + side, w]) - count(state[T + side, w])
         return total
 
-    def _most_promising(self, state, side):
-        """Fill ``chosen`` with the nodes that look-ahead tries on ``side``, best first; return how many there are.
-
-        Of the nodes that may be satisfied on either side these are nearest to being excluded from this one and hear
-        most satisfied nodes. Ties go to the lower id.
-        """
-        hears, margin, words = self.rules.hears, self.rules.margin, self.rules.words
-        value, chosen, found = self.value, self.chosen, 0
-        for w in range(words):
-            rest = state[P, w] & state[P + 1, w]
-            while rest:
-                v = (w << 6) + first(rest)
-                rest &= rest - 1
-                worth = -4 * margin[side, v]
-                for x in range(words):
-                    worth += count(hears[v, x] & (state[T, x] | state[T + 1, x]))
-                place = found
-                if found < TRIED:
-                    found += 1
-                elif worth <= value[found - 1]:
-                    continue
-                else:
-                    place -= 1
-                while place > 0 and value[place - 1] < worth:
-                    value[place] = value[place - 1]
-                    chosen[place] = chosen[place - 1]
-                    place -= 1
-                value[place] = worth
-                chosen[place] = v
-        return found
-
     def _probe(self, state, side, v):
         """Propagate v as a satisfied node of ``side`` on a copy of ``state``; return whether that is possible.
 
@@ -181,7 +151,7 @@ class Search:
                 surplus += count(state[P, w]) - count(state[P + 1, w])
             # On a tie the second side: a root has begun the first one.
             side = 1 if surplus >= 0 else 0
-            found = self._most_promising(state, side)
+            found = most_promising(self.rules.hears, self.rules.margin, state, P, T, side, self.value, chosen)
             if found == 0:
                 self.side, self.node = 2, -1
                 return

@@ -1,15 +1,8 @@
 cimport cython
+from robustness.kernels.shared cimport varint
 from robustness.kernels.words cimport bit_of, SOURCES, count, first, number, word
 
 cdef int C, P, F, T, PROPAGATE, EXCLUDE, SATISFIED
-
-cdef number varint(unsigned char[::1] buffer, number place, number value) noexcept nogil
-
-@cython.locals(row=number, w=number)
-cdef void copy_state(word[:, ::1] target, word[:, ::1] source) noexcept nogil
-
-@cython.locals(words=number, w=number, x=number, i=number, inside=number, rest=word, changed=bint, some=bint)
-cdef bint core(word[:, ::1] hears, number[::1] need, word[::1] candidates, word[::1] support) noexcept nogil
 
 @cython.locals(w=number, bit=word)
 cpdef void assume(word[:, ::1] state, number kind, number side, number node, bint true) noexcept nogil

@@ -51,6 +51,7 @@ except ImportError:
     from robustness.kernels import uncompiled as cython
 
 if not cython.compiled:
+    from robustness.kernels.shared import varint
     from robustness.kernels.words import bit_of, count, first
 
 __all__ = ["Rules"]
@@ -58,48 +59,6 @@ __all__ = ["Rules"]
 C, P, F, T = layout.C, layout.P, layout.F, layout.T
 PROPAGATE, EXCLUDE = layout.PROPAGATE, layout.EXCLUDE
 SATISFIED = layout.SATISFIED
-
-
-def varint(buffer, place, value):
-    """Write a number to ``buffer``, seven bits a byte, low first; return the place behind it."""
-    while value >= 128:
-        buffer[place] = value & 127 | 128
-        place += 1
-        value >>= 7
-    buffer[place] = value
-    return place + 1
-
-
-def copy_state(target, source):
-    """Copy a state."""
-    for row in range(source.shape[0]):
-        for w in range(source.shape[1]):
-            target[row, w] = source[row, w]
-
-
-def core(hears, need, candidates, support):
-    """Shrink ``candidates`` to its largest subset K with ``|N_i & (K | support)| >= need_i`` on K.
-
-    Return whether K is nonempty. Such subsets are closed under union, so there is one largest, whatever the order.
-    """
-    words = candidates.shape[0]
-    while True:
-        changed, some = False, False
-        for w in range(words):
-            rest = candidates[w]
-            while rest:
-                i = (w << 6) + first(rest)
-                rest &= rest - 1
-                inside = 0
-                for x in range(words):
-                    inside += count(hears[i, x] & (candidates[x] | support[x]))
-                if inside < need[i]:
-                    candidates[w] &= ~bit_of(i)
-                    changed = True
-            if candidates[w]:
-                some = True
-        if not changed:
-            return some
 
 
 class Rules:

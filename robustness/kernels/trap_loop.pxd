@@ -1,10 +1,10 @@
 cimport cython
-from robustness.kernels.search_rules cimport copy_state, core, varint
+from robustness.kernels.shared cimport copy_state, core, most_promising, varint
 from robustness.kernels.trap_rules cimport TrapRules, assume
 from robustness.kernels.words cimport SOURCES, bit_of, count, first, number, word
 
 cdef int P, Q, F, T, Z, NORMAL, MALICIOUS, ROOT, BRANCH, NODES, FAILED, PROBES
-cdef int CLOSED, FOUND, PAUSED, FLUSH, GROW, STUCK, _SOLVED, _NOTHING, _CONTRADICTION
+cdef int CLOSED, FOUND, PAUSED, FLUSH, GROW, STUCK, TRAPS_TRIED, _SOLVED, _NOTHING, _CONTRADICTION
 
 @cython.final
 cdef class TrapSearch:
@@ -14,7 +14,8 @@ cdef class TrapSearch:
     cdef public number[::1] symmetric, counters, votes
     cdef public number level
     cdef public word[:, ::1] found, scratch
-    cdef public number[:, ::1] shrink
+    cdef public number[:, ::1] scratch_margin
+    cdef public number[::1] value, chosen
     cdef number side, node
 
     @cython.locals(words=number, found=word[:, ::1], side=number, other=number, w=number, free=word)
@@ -26,8 +27,8 @@ cdef class TrapSearch:
     cdef void _wanted(self, word[:, ::1] state) noexcept nogil
 
     @cython.locals(
-        words=number, votes=number[::1], most=number, side=number, v=number, w=number, x=number, i=number, rest=word,
-        open_=word)
+        words=number, votes=number[::1], most=number, side=number, v=number, w=number, x=number, i=number, lack=number,
+        vote=number, rest=word, open_=word)
     cdef void _pressing(self, word[:, ::1] state) noexcept nogil
 
     @cython.locals(side=number, w=number, rest=word)
@@ -36,9 +37,12 @@ cdef class TrapSearch:
     @cython.locals(total=number, w=number, side=number)
     cdef number _weight(self, word[:, ::1] state) noexcept nogil
 
+    @cython.locals(kept=number[:, ::1], possible=bint)
+    cdef bint _probe(self, word[:, ::1] state, number side, number v) noexcept nogil
+
     @cython.locals(
-        words=number, shrink=number[:, ::1], weight=number, some=bint, failed=bint, w=number, v=number, side=number,
-        rest=word, score=number, best=number, chosen=number, start=number, place=number)
+        chosen=number[::1], surplus=number, w=number, side=number, found=number, most=number, node=number,
+        a=number, v=number, start=number, place=number, settled=number)
     cdef void _look_ahead(self, word[:, ::1] state) noexcept nogil
 
     @cython.locals(need=number[::1], chosen=number, w=number, v=number, rest=word)

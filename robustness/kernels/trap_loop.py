@@ -7,10 +7,13 @@ A *symmetric* level holds the same sets on both sides. There a root v is chosen 
 node of side 1; when that is refuted, v is normal on neither side (it may still be malicious).
 
 M is never enumerated. *Lazily*, it is first settled who can be normal where under the most favourable M that the bound
-allows; a node is drawn (malicious or not) when a node of T cannot do without, or when no node can be normal on both
+allows; a node is drawn (malicious or not) when a node of T has no place to spare, or when no node can be normal on both
 sides any more. *Eagerly*, what the nodes of T hear is drawn first. The first is better where few nodes are tight (dense
 graphs), the second on sparse graphs; nobody knows before, so :mod:`robustness.traps.searching` runs both in
 turns.
+
+Look-ahead tries a few nodes as normal ones of the side with fewer candidates. In a transcript a node that cannot be
+normal there is a branch whose true child closes at once.
 """
 
 from __future__ import annotations
@@ -25,7 +28,7 @@ except ImportError:
     from robustness.kernels import uncompiled as cython
 
 if not cython.compiled:
-    from robustness.kernels.search_rules import copy_state, core, varint
+    from robustness.kernels.shared import copy_state, core, most_promising, varint
     from robustness.kernels.trap_rules import assume
     from robustness.kernels.words import bit_of, count, first
 
@@ -36,7 +39,7 @@ NORMAL, MALICIOUS = layout.NORMAL, layout.MALICIOUS
 ROOT, BRANCH = layout.ROOT, layout.BRANCH
 NODES, FAILED, PROBES = layout.NODES, layout.FAILED, layout.PROBES
 CLOSED, FOUND, PAUSED, FLUSH = layout.CLOSED, layout.FOUND, layout.PAUSED, layout.FLUSH
-GROW, STUCK = layout.GROW, layout.STUCK
+GROW, STUCK, TRAPS_TRIED = layout.GROW, layout.STUCK, layout.TRAPS_TRIED
 
 
 class TrapSearch:
@@ -47,7 +50,7 @@ class TrapSearch:
     rules : TrapRules
         The question.
     look_ahead : bool
-        Whether branching first tries every node that is left.
+        Whether branching first tries a few nodes, and draws M where that presses.
     eager : bool
         When M is drawn.
 
@@ -74,7 +77,9 @@ class TrapSearch:
         self.counters = np.zeros(3, np.int64)
         self.found = np.zeros((4, words), np.uint64)
         self.scratch = np.empty((layout.TRAP_ROWS, words), np.uint64)
-        self.shrink = np.zeros((2, n), np.int64)
+        self.scratch_margin = np.zeros((2, n), np.int64)
+        self.value = np.empty(TRAPS_TRIED, np.int64)
+        self.chosen = np.empty(TRAPS_TRIED, np.int64)
         self.votes = np.zeros(n, np.int64)
         self.side, self.node = 0, -1
 
@@ -130,9 +135,10 @@ class TrapSearch:
                     self.side, self.node = side, v
 
     def _pressing(self, state):
-        """Choose the possibly malicious node that is heard by most nodes of T; without one the side is -1.
+        """Choose the possibly malicious node whose place matters most to the nodes of T; without one the side is -1.
 
-        Lazily, only nodes of T count that cannot do without a further malicious one.
+        A node of T counts four times as much for each place that it has less to spare. Lazily, only those count that
+        have nothing to spare, and only the places that nobody but a malicious node can take.
         """
         words, votes, most = self.rules.words, self.votes, 0
         self.side, self.node = -1, -1
@@ -144,14 +150,16 @@ class TrapSearch:
                 while rest:
                     i = (w << 6) + first(rest)
                     rest &= rest - 1
-                    if not self.eager and self.rules.lack(state, side, i) == 0:
+                    lack = self.rules.lack(state, side, i)
+                    if not self.eager and lack < 0:
                         continue
+                    vote = 1 << 2 * max(0, lack + 3)
                     for x in range(words):
                         open_ = self.rules.hears[i, x] & state[Q + side, x] & ~state[Z, x]
                         if not self.eager:
                             open_ &= ~self.rules.sure(state, side, x)
                         while open_:
-                            votes[(x << 6) + first(open_)] += 1
+                            votes[(x << 6) + first(open_)] += vote
                             open_ &= open_ - 1
             for v in range(self.rules.n):
                 if votes[v] > most:
@@ -176,59 +184,60 @@ class TrapSearch:
                 total += count(state[P + side, w]) - count(state[T + side, w])
         return total
 
-    def _look_ahead(self, state):
-        """Try every node that may still be normal on either side; choose a side and a node to branch on.
+    def _probe(self, state, side, v):
+        """Propagate v as a normal node of ``side`` on a copy of ``state``; return whether that is possible.
 
-        side is -1 when the state became contradictory and 2 when no node is left in both. The score of a node is the
-        product of what its two positive literals settle.
+        The margins of ``state`` are kept.
         """
-        words, shrink = self.rules.words, self.shrink
+        self.counters[PROBES] += 1
+        copy_state(self.scratch, state)
+        assume(self.scratch, NORMAL, side, v, 1, self.rules.two_faces)
+        kept = self.rules.margin
+        self.rules.margin = self.scratch_margin
+        possible = self.rules.propagate(self.scratch)
+        self.rules.margin = kept
+        return possible
+
+    def _look_ahead(self, state):
+        """Try a few nodes as normal ones of the side with fewer candidates; set side and node to branch on.
+
+        A node that cannot be normal there is a failed literal: a branch whose true child closes at once. Of the others
+        the one that settles most is branched on. side is -1 when the state became contradictory and 2 when no node is
+        left in both.
+        """
+        chosen = self.chosen
         while True:
-            weight, some, failed = self._weight(state), False, False
-            for w in range(words):
-                rest = state[P, w] & state[P + 1, w]
-                while rest:
-                    v = (w << 6) + first(rest)
-                    rest &= rest - 1
-                    some = True
-                    for side in range(2):
-                        self.counters[PROBES] += 1
-                        start = self.rules.place
-                        if start >= 0:
-                            place = varint(self.rules.buffer, start, BRANCH + 2 * NORMAL + side)
-                            self.rules.place = varint(self.rules.buffer, place, v)
-                        copy_state(self.scratch, state)
-                        assume(self.scratch, NORMAL, side, v, 1, self.rules.two_faces)
-                        if not self.rules.propagate(self.scratch):
-                            self.counters[FAILED] += 1
-                            failed = True
-                            assume(state, NORMAL, side, v, 0, self.rules.two_faces)
-                            if not self.rules.propagate(state):
-                                self.side, self.node = -1, -1
-                                return
-                            weight = self._weight(state)
-                            shrink[0, v] = -1
-                            rest &= state[P, w] & state[P + 1, w]
-                            break
-                        self.rules.place = start
-                        shrink[side, v] = weight - self._weight(self.scratch)
-            if not some:
+            surplus = 0
+            for w in range(self.rules.words):
+                surplus += count(state[P, w]) - count(state[P + 1, w])
+            # On a tie the second side: a root has begun the first one.
+            side = 1 if surplus >= 0 else 0
+            found = most_promising(self.rules.hears, self.rules.margin, state, P, T, side, self.value, chosen)
+            if found == 0:
                 self.side, self.node = 2, -1
                 return
-            best, chosen = -1, -1
-            for w in range(words):
-                rest = state[P, w] & state[P + 1, w]
-                while rest:
-                    v = (w << 6) + first(rest)
-                    rest &= rest - 1
-                    score = (2 * shrink[0, v] + 1) * (2 * shrink[1, v] + 1)
-                    if shrink[0, v] >= 0 and score > best:
-                        best, chosen = score, v
-            if chosen >= 0:
-                self.side, self.node = 0 if shrink[0, chosen] > shrink[1, chosen] else 1, chosen
-                return
-            if not failed:
-                self.side, self.node = 2, -1
+            most, node = -1, -1
+            for a in range(found):
+                v = chosen[a]
+                if not state[P, v >> 6] & state[P + 1, v >> 6] & bit_of(v):
+                    continue  # a failed literal has settled it
+                start = self.rules.place
+                if start >= 0:
+                    place = varint(self.rules.buffer, start, BRANCH + 2 * NORMAL + side)
+                    self.rules.place = varint(self.rules.buffer, place, v)
+                if not self._probe(state, side, v):
+                    self.counters[FAILED] += 1
+                    assume(state, NORMAL, side, v, 0, self.rules.two_faces)
+                    if not self.rules.propagate(state):
+                        self.side, self.node = -1, -1
+                        return
+                    continue
+                self.rules.place = start
+                settled = self._weight(state) - self._weight(self.scratch)
+                if settled > most:
+                    most, node = settled, v
+            if node >= 0 and state[P, node >> 6] & state[P + 1, node >> 6] & bit_of(node):
+                self.side, self.node = side, node
                 return
 
     def _highest_need(self, state):

@@ -1,9 +1,8 @@
 cimport cython
-from robustness.kernels.search_rules cimport varint
+from robustness.kernels.shared cimport varint
 from robustness.kernels.words cimport SOURCES, bit_of, count, first, number, word
 
 cdef int P, Q, F, T, Z, NORMAL, PROPAGATE, EXCLUDE
-cdef word _ALL
 
 @cython.locals(w=number, bit=word)
 cpdef void assume(word[:, ::1] state, number kind, number side, number node, bint true, bint two_faces) noexcept nogil
@@ -12,6 +11,9 @@ cpdef void assume(word[:, ::1] state, number kind, number side, number node, bin
 cdef class TrapRules:
     cdef public word[:, ::1] hears
     cdef public number[::1] need, votes
+    cdef public number[:, ::1] margin
+    cdef public word[:, ::1] reach, loose, near
+    cdef public number[::1] blocker, budget
     cdef public unsigned char[::1] buffer
     cdef public number n, words, f, place
     cdef public bint two_faces, local, counting
@@ -41,10 +43,16 @@ cdef class TrapRules:
     cdef number _gain(
         self, number left_i, number left_j, number x, number y, number z_i, number z_j) noexcept nogil
 
+    @cython.locals(words=number, most=number, v=number, x=number, i=number, rest=word)
+    cdef number _gather_blockers(self, word[:, ::1] state, number side) noexcept nogil
+
     @cython.locals(
-        words=number, other=number, changed=bint, v=number, w=number, u=number, i=number, j=number, left_i=number,
-        left_j=number, places=number, x=number, y=number, z_i=number, z_j=number, blockers=word, rest=word, a=word,
-        b=word, may=word, one=word, two=word)
+        i=number, x=number, y=number, z_i=number, z_j=number, u=number, either=word, one=word, two=word)
+    cdef number _further(self, number j, number a, number left_j) noexcept nogil
+
+    @cython.locals(
+        words=number, other=number, near=word[:, ::1], reach=word[:, ::1], need=number[::1], most=number, changed=bint,
+        w=number, x=number, i=number, j=number, a=number, have=number, margin=number, places=number, rest=word)
     cdef number _exclude(self, word[:, ::1] state, number side) noexcept nogil
 
     @cython.locals(inside=number, x=number)

@@ -63,14 +63,14 @@ except ImportError:
     from robustness.kernels import uncompiled as cython
 
 if not cython.compiled:
-    from robustness.kernels.search_rules import varint
+    from robustness.kernels.shared import varint
     from robustness.kernels.words import bit_of, count, first
 
 __all__ = ["TrapRules"]
 
 P, Q, F, T, Z = layout.TRAP_P, layout.TRAP_Q, layout.TRAP_F, layout.TRAP_T, layout.TRAP_Z
 PROPAGATE, EXCLUDE = layout.PROPAGATE, layout.EXCLUDE
-NORMAL, _ALL = layout.NORMAL, np.uint64(0xFFFFFFFFFFFFFFFF)
+NORMAL = layout.NORMAL
 
 
 class TrapRules:
@@ -91,6 +91,9 @@ class TrapRules:
 
     Attributes
     ----------
+    margin : array of int64, shape (2, n)
+        After :meth:`propagate`, how far every candidate of either side is from being excluded by *count* if nobody
+        else is malicious.
     buffer : array of uint8
         Where the transcript is written; at least 32 n^2 bytes beyond ``place`` are free at every node.
     place : int
@@ -103,6 +106,13 @@ class TrapRules:
         self.two_faces, self.local, self.counting = two_faces, local, counting
         self.n, self.words = hears.shape
         self.votes = np.zeros(self.n, np.int64)
+        self.margin = np.zeros((2, self.n), np.int64)
+        # See _gather_blockers and _exclude.
+        self.reach = np.empty((self.n, self.words), np.uint64)
+        self.loose = np.empty((self.n, self.words), np.uint64)
+        self.near = np.empty((3, self.words), np.uint64)
+        self.blocker = np.empty(self.n, np.int64)
+        self.budget = np.empty(self.n, np.int64)
         self.buffer = np.empty(1, np.uint8)
         self.place = -1
 
@@ -261,63 +271,90 @@ class TrapRules:
         spent_i, spent_j = min(left_i, z_i + y), min(left_j, z_j + y)
         return spent_i + spent_j + min(x, min(left_i - spent_i, left_j - spent_j))
 
-    def _exclude(self, state, side):
-        """Apply *count* with every blocker of a side; return 0: contradiction, 2: something changed, 1: nothing."""
-        words, other = self.words, 1 - side
-        changed = False
+    def _gather_blockers(self, state, side):
+        """Note every normal node of a side, whom it hears of D, of Q - Z, and how many of these may be malicious."""
+        words, most = self.words, 0
         for v in range(words):
-            blockers = state[T + side, v]
-            while blockers:
-                i = (v << 6) + first(blockers)
-                blockers &= blockers - 1
-                left_i = self._left(state, i)
-                for w in range(words):
-                    rest = state[P + other, w]
-                    while rest:
-                        j = (w << 6) + first(rest)
-                        rest &= rest - 1
-                        places, x, y, z_i, z_j = 0, 0, 0, 0, 0
-                        for u in range(words):
-                            a = self.hears[i, u] & self.sure(state, side, u)
-                            b = self.hears[j, u] & self.sure(state, other, u)
-                            may = _ALL
-                            if u == w:
-                                a &= ~bit_of(j)
-                                may &= ~bit_of(j)
-                            if u == v:
-                                b &= ~bit_of(i)
-                                may &= ~bit_of(i)
-                            places += count(a | b)
-                            may &= ~state[Z, u]
-                            one = self.hears[i, u] & state[Q + side, u] & may
-                            two = self.hears[j, u] & state[Q + other, u] & may
-                            if self.two_faces:
-                                places += count(a & b & state[Z, u])
-                                x += count(one & two & (a | b))
-                            y += count(one & two & ~(a | b))
-                            z_i += count(one & ~two & ~(a | b))
-                            z_j += count(two & ~one & ~(a | b))
-                        if places >= self.need[i] + self.need[j]:
-                            continue
-                        left_j = self._left(state, j) if self.local else left_i
-                        if places + self._gain(left_i, left_j, x, y, z_i, z_j) >= self.need[i] + self.need[j]:
-                            continue
-                        if self.place >= 0:
-                            self.place = varint(self.buffer, self.place, EXCLUDE + other)
-                            self.place = varint(self.buffer, self.place, j)
-                            self.place = varint(self.buffer, self.place, i)
-                        if state[T + other, w] & bit_of(j):
-                            return 0
-                        state[P + other, w] &= ~bit_of(j)
-                        changed = True
+            rest = state[T + side, v]
+            while rest:
+                i = (v << 6) + first(rest)
+                rest &= rest - 1
+                for x in range(words):
+                    self.reach[most, x] = self.hears[i, x] & self.sure(state, side, x)
+                    self.loose[most, x] = self.hears[i, x] & state[Q + side, x] & ~state[Z, x]
+                self.blocker[most] = i
+                self.budget[most] = self._left(state, i)
+                most += 1
+        return most
+
+    def _further(self, j, a, left_j):
+        """Return the most places that further malicious nodes add for candidate j and the blocker at place ``a``."""
+        i, x, y, z_i, z_j = self.blocker[a], 0, 0, 0, 0
+        for u in range(self.words):
+            either = self.reach[a, u] | self.near[0, u]
+            one, two = self.loose[a, u], self.near[1, u]
+            if u == j >> 6:
+                one &= ~bit_of(j)
+            if u == i >> 6:
+                two &= ~bit_of(i)
+            x += count(one & two & either)
+            y += count(one & two & ~either)
+            z_i += count(one & ~two & ~either)
+            z_j += count(two & ~one & ~either)
+        return self._gain(self.budget[a], left_j, x, y, z_i, z_j)
+
+    def _exclude(self, state, side):
+        """Apply *count* with every blocker of a side; return 0: contradiction, 2: something changed, 1: nothing.
+
+        ``near`` (3, words): whom the candidate hears of D, of Q - Z, and of D those that give one place at most.
+        """
+        words, other, near, reach, need = self.words, 1 - side, self.near, self.reach, self.need
+        most = self._gather_blockers(state, side)
+        changed = False
+        for w in range(words):
+            rest = state[P + other, w]
+            while rest:
+                j = (w << 6) + first(rest)
+                rest &= rest - 1
+                have = -need[j]
+                for x in range(words):
+                    near[0, x] = self.hears[j, x] & self.sure(state, other, x)
+                    near[1, x] = self.hears[j, x] & state[Q + other, x] & ~state[Z, x]
+                    near[2, x] = near[0, x] & ~state[Z, x] if self.two_faces else near[0, x]
+                    have += count(near[0, x])
+                margin = 2 * self.n
+                for a in range(most):
+                    i = self.blocker[a]
+                    places = have - need[i]
+                    for x in range(words):
+                        places += count(reach[a, x] & ~near[2, x])
+                    if reach[a, w] & bit_of(j):
+                        places -= 1
+                    if near[0, i >> 6] & bit_of(i):
+                        places -= 1
+                    margin = min(margin, places)
+                    if places >= 0:
+                        continue
+                    if places + self._further(j, a, self._left(state, j)) >= 0:
+                        continue
+                    if self.place >= 0:
+                        self.place = varint(self.buffer, self.place, EXCLUDE + other)
+                        self.place = varint(self.buffer, self.place, j)
+                        self.place = varint(self.buffer, self.place, i)
+                    if state[T + other, w] & bit_of(j):
+                        return 0
+                    state[P + other, w] &= ~bit_of(j)
+                    changed = True
+                    break
+                self.margin[other, j] = margin
         return 2 if changed else 1
 
     def lack(self, state, side, node):
-        """Return how many further malicious nodes the node of T needs inside its side (at least; 0 when none)."""
+        """Return how many further malicious nodes the node of T needs inside its side; below 0: it can spare some."""
         inside = 0
         for x in range(self.words):
             inside += count(self.hears[node, x] & self.sure(state, side, x))
-        return max(0, self.need[node] - inside)
+        return self.need[node] - inside
 
     def _share(self, state):
         """Apply *share*; return False for a contradiction."""
@@ -332,7 +369,7 @@ class TrapRules:
                     i = (w << 6) + first(rest)
                     rest &= rest - 1
                     missing = self.lack(state, side, i)
-                    if missing == 0:
+                    if missing <= 0:
                         continue
                     total += missing
                     for x in range(words):

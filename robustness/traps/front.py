@@ -54,7 +54,7 @@ def find_trap(
     time_limit : float, optional
         Wall-clock seconds; past it ``exists`` is None.
     jobs, seed, progress
-        As for :func:`robustness.check_rs_robustness`; ``search`` uses one thread.
+        As for :func:`robustness.check_rs_robustness`; ``search`` uses two threads at most.
     **options
         ``counting`` and ``look_ahead``: switches of ``search``.
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import numpy.typing as npt
@@ -33,7 +36,7 @@ def decide(
     Exponential in the worst case. ``counting`` and ``look_ahead`` are switches for what they are named after; the
     answer does not depend on them. With ``transcript`` the answer that there is no solution carries the refutation that
     :func:`certificates.verify_tolerance` replays; it needs ``counting``. Two searches that differ in when M is drawn
-    (:mod:`robustness.kernels.trap_loop`) take turns; the first to end decides.
+    (:mod:`robustness.kernels.trap_loop`) take turns, with more than one job at the same time; the first to end decides.
     """
     hears = graph.in_words
     need = np.maximum(graph.in_degrees - question.f, 0).astype(np.int64)
@@ -42,21 +45,38 @@ def decide(
         for eager in (False, True)[: 1 + look_ahead]
     ]
     told, allowed = time.monotonic(), limits.nodes_allowed(graph.n)
-    while True:
-        for run in runs:
-            run.advance()
-            stats = {"nodes": sum(each.nodes for each in runs), "probes": sum(each.probes for each in runs)}
-            if run.is_closed:
-                return TrapAnswer(False, stats=stats, transcript=b"".join(run.transcript) if transcript else None)
-            if run.solution is not None:
-                return TrapAnswer(True, run.solution, stats=stats)
-            if limits.expired():
-                return TrapAnswer.undecided("the time limit was reached", stats)
-            if stats["nodes"] >= allowed:
-                return TrapAnswer.undecided("the budget of steps was spent", stats)
+    for run in _turns(runs, limits.jobs):
+        stats = {"nodes": sum(each.nodes for each in runs), "probes": sum(each.probes for each in runs)}
+        if run.is_closed:
+            return TrapAnswer(False, stats=stats, transcript=b"".join(run.transcript) if transcript else None)
+        if run.solution is not None:
+            return TrapAnswer(True, run.solution, stats=stats)
+        if limits.expired():
+            return TrapAnswer.undecided("the time limit was reached", stats)
+        if stats["nodes"] >= allowed:
+            return TrapAnswer.undecided("the budget of steps was spent", stats)
         if limits.progress is not None and time.monotonic() - told > 0.2:
             told = time.monotonic()
             limits.progress(Progress(stats["nodes"], f"traps for f = {question.f}"))
+    raise AssertionError("turns are taken without end")
+
+
+def _turns(runs: list[_Run], jobs: int) -> Iterator[_Run]:
+    """Advance the runs in turns for ever; yield each after its turn.
+
+    After the first, which settles most questions, the turns are taken at the same time where there are two threads.
+    """
+    for turn in itertools.count():
+        together = turn > 0 and jobs > 1
+        if together:
+            # Turns are short, so Ctrl-C waits for their end.
+            with ThreadPoolExecutor(len(runs), "robustness-traps") as pool:
+                for done in [pool.submit(run.advance) for run in runs]:
+                    done.result()
+        for run in runs:
+            if not together:
+                run.advance()
+            yield run
 
 
 class _Run:

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 import robustness as rb
+from certificates.graph import decode_graph
+from certificates.separation import check_separation
 from robustness.kernels.layout import (
     MALICIOUS,
     NORMAL,
@@ -22,7 +24,8 @@ from robustness.kernels.layout import TRAP_Z as Z
 from robustness.kernels.trap_rules import TrapRules, assume
 from robustness.traps import find_trap
 from robustness.traps.question import Question, Sets, solves
-from robustness.traps.searching import _whole_state
+from robustness.traps.searching import _Run, _whole_state
+from tests.oracles import digraphs, graphs
 from tests.tolerance.brute_force import has_standing_attack, has_trap
 
 KINDS = list(product((False, True), (False, True)))
@@ -112,6 +115,31 @@ def test_a_malicious_node_that_has_no_side_yet_costs_nothing_more() -> None:
     masks = (118, 57, 123, 54, 72, 26, 63)
     graph = rb.Digraph(range(7), [(j, i) for i in range(7) for j in range(7) if masks[i] >> j & 1])
     assert find_trap(graph, 1, faces=1, local=True, algorithm="search").M == {0, 2, 6}
+
+
+@pytest.mark.parametrize(("two_faces", "local"), KINDS)
+@pytest.mark.parametrize(("look_ahead", "eager"), [(False, False), (True, False), (True, True)])
+def test_each_strategy_alone_is_right_on_all_small_graphs_and_writes_what_the_kernel_of_certificates_accepts(
+    two_faces: bool, local: bool, look_ahead: bool, eager: bool
+) -> None:
+    """Together they take turns, so that one of them could hide behind the other."""
+    truth = has_trap if two_faces else has_standing_attack
+    refuted = tried = 0
+    for graph in (each for n in (2, 3, 4, 5) for each in (*graphs(n), *(digraphs(n) if n < 4 else ()))):
+        for f in range(3):
+            need = np.maximum(graph.in_degrees - f, 0).astype(np.int64)
+            run = _Run(graph.in_words, need, Question(f, two_faces, local), True, look_ahead, eager, True)
+            while not run.is_closed and run.solution is None:
+                run.advance()
+            assert run.is_closed != truth(graph.in_masks, f, local), (graph.in_masks, f)
+            tried += run.probes
+            if run.is_closed:
+                canonical = decode_graph(graph.canonical_bytes())
+                body = b"".join(run.transcript)
+                assert check_separation(canonical, f, 2 if two_faces else 1, "local" if local else "total", body) >= 1
+                refuted += 1
+    assert refuted > 40
+    assert (tried > 0) == look_ahead
 
 
 @pytest.mark.slow

@@ -15,10 +15,12 @@ import networkx as nx
 import pytest
 
 import robustness as rb
+from certificates.graph import decode_graph
+from certificates.separation import check_separation
 from robustness.constructions import two_f_robust_counterexample
 from robustness.errors import InternalError, InvalidParameter, Undecided
 from robustness.limits import Limits, Progress
-from robustness.traps import TRAP_ALGORITHMS, find_trap
+from robustness.traps import TRAP_ALGORITHMS, find_trap, searching
 from robustness.traps.ladder import decide_trap
 from robustness.traps.question import Question, Sets, TrapAnswer, obeys_bound, solves
 from robustness.traps.shortcuts import settle_trap
@@ -57,6 +59,31 @@ def test_search_agrees_with_the_definition_with_every_rule_on_and_off(
             found = find_trap(graph, f, faces=faces, local=local, algorithm="search", **options)
             assert found.exists == exists(graph, f, faces, local), (graph.in_masks, f)
             assert found.algorithm == "search"
+
+
+@pytest.mark.parametrize("jobs", [1, 2, 3])
+def test_the_answer_does_not_depend_on_threads(jobs: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    graph = rb.Digraph.from_networkx(nx.random_regular_graph(7, 24, seed=1))
+    advance, turns = searching._Run.advance, []
+
+    def note(run: searching._Run) -> None:
+        turns.append(threading.current_thread().name)
+        run._quota = 40
+        advance(run)
+
+    monkeypatch.setattr(searching._Run, "advance", note)
+    found = searching.decide(graph, Question(2), Limits(jobs=jobs), transcript=True)
+    assert found.exists is False
+    assert check_separation(decode_graph(graph.canonical_bytes()), 2, 2, "total", found.transcript or b"") > 40
+    assert any(name.startswith("robustness-traps") for name in turns) == (jobs > 1)
+
+
+def test_looking_ahead_saves_what_it_is_for() -> None:
+    for d, n, f in ((6, 24, 1), (8, 30, 2), (7, 24, 2)):
+        graph = nx.random_regular_graph(d, n, seed=1)
+        with_it, without = (find_trap(graph, f, algorithm="search", look_ahead=each) for each in (True, False))
+        assert with_it.exists == without.exists
+        assert with_it.stats["nodes"] < without.stats["nodes"]
 
 
 @pytest.mark.parametrize(("faces", "local"), KINDS)
@@ -195,8 +222,8 @@ class TestLimits:
                 raise StopIteration
 
         with pytest.raises(StopIteration):
-            find_trap(nx.random_regular_graph(8, 60, seed=1), 2, algorithm="search", progress=note)
-        assert all(each.nodes >= 0 and "f = 2" in each.note for each in told)
+            find_trap(nx.random_regular_graph(10, 60, seed=1), 3, algorithm="search", progress=note)
+        assert all(each.nodes >= 0 and "f = 3" in each.note for each in told)
 
     @pytest.mark.parametrize("algorithm", ["search", "cp-sat"])
     def test_ctrl_c(self, algorithm: str) -> None:
