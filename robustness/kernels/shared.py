@@ -4,6 +4,9 @@ Their states differ in kind; the caller says in which rows the sets are. Everyth
 lock. Node sets are rows of ``words`` 64-bit words (uint64), numbers int64.
 """
 
+# mypy: ignore-errors
+# Types are in shared.pxd, which the compiler checks.
+
 from __future__ import annotations
 
 try:
