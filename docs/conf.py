@@ -23,9 +23,10 @@ extensions = [
     "sphinx.ext.napoleon",
     "mathml",
     "sphinx.ext.viewcode",
+    "sphinx_gallery.gen_gallery",
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = ["_build", "**/.*", "python-api/*/modules.rst"]
+exclude_patterns = ["_build", "**/.*", "python-api/*/modules.rst", "gallery/*.ipynb", "gallery/*.py"]
 html_theme = "furo"
 html_title = "graph-robustness"
 html_math_renderer = "mathml"
@@ -55,6 +56,21 @@ autodoc_typehints = "description"
 autodoc_typehints_description_target = "documented"
 napoleon_google_docstring = False
 napoleon_use_ivar = True
+
+# Stories that are run at every build, in the order of their numbers; an error in one is an error of the build.
+sphinx_gallery_conf = {
+    "examples_dirs": "../examples/gallery",
+    "gallery_dirs": "gallery",
+    "filename_pattern": r"\.py$",
+    "within_subsection_order": "FileNameSortKey",
+    "abort_on_example_error": True,
+    "download_all_examples": False,
+    "show_memory": False,
+    "show_signature": False,
+    "min_reported_time": 3600,
+    "plot_gallery": True,
+    "remove_config_comments": True,
+}
 
 
 def escape_bars(_app: Any, _what: str, _name: str, _object: Any, _options: Any, lines: list[str]) -> None:

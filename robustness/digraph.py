@@ -20,6 +20,7 @@ import numpy.typing as npt
 from certificates.errors import MalformedGraph
 from certificates.graph import Label, digest, encode_graph, label_key
 from robustness.errors import InvalidGraph
+from robustness.places import place_of
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -138,14 +139,17 @@ class Digraph:
         """Return the digraph of a networkx graph, which is read and never changed.
 
         Undirected edges become two arcs; parallel edges of a multigraph count once, with a
-        :class:`GraphWarning`; attributes and weights are ignored.
+        :class:`GraphWarning`; weights are ignored, and of attributes all but where a node stands, which is kept as
+        ``pos`` for pictures.
         """
         arcs: list[tuple[Hashable, Hashable]] = [(edge[0], edge[1]) for edge in graph.edges()]
         if graph.is_multigraph() and len({frozenset(a) if not graph.is_directed() else a for a in arcs}) < len(arcs):
             warnings.warn("parallel edges count once: N_i is a set", GraphWarning, stacklevel=2)
         if not graph.is_directed():
             arcs += [(v, u) for u, v in arcs if u != v]
-        return cls(graph.nodes(), arcs, directed=graph.is_directed())
+        places = ((node, place_of(data)) for node, data in graph.nodes(data=True) if data)
+        attributes = {node: {"pos": place} for node, place in places if place is not None}
+        return cls(graph.nodes(), arcs, directed=graph.is_directed(), node_attributes=attributes)
 
     def to_networkx(self) -> nx.Graph:
         """Return a new networkx graph: a ``Graph`` when the source was undirected, else a ``DiGraph``.

@@ -51,10 +51,12 @@ def test_the_tour_of_the_command_line_runs(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("page", ["README.md", "docs/getting-started.md", "docs/simulation.md"])
 def test_the_python_example_prints_what_its_comments_say(page: str) -> None:
-    (example,) = blocks((ROOT / page).read_text(encoding="utf-8"), "python")
-    printed = io.StringIO()
-    with contextlib.redirect_stdout(printed):
-        exec(compile(example, page, "exec"), {})  # noqa: S102 - our own page
-    promised = [line.partition("  # ")[2] for line in example.splitlines() if line.startswith("print")]
-    for said, done in zip(promised, printed.getvalue().splitlines(), strict=True):
-        assert said == done
+    examples = blocks((ROOT / page).read_text(encoding="utf-8"), "python")
+    assert examples
+    for example in examples:
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            exec(compile(example, page, "exec"), {})  # noqa: S102 - our own page
+        promised = [line.partition("  # ")[2] for line in example.splitlines() if line.startswith("print")]
+        for said, done in zip(promised, printed.getvalue().splitlines(), strict=True):
+            assert said == done

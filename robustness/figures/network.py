@@ -15,6 +15,8 @@ from robustness.figures.marking import Marks, marks_of
 from robustness.figures.placement import Positions, positions_for, positions_in
 from robustness.figures.saving import new_figure, save_figure
 from robustness.figures.wording import plain
+from robustness.showing import Shown
+from robustness.time_varying import TimeVaryingGraph
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,7 +35,7 @@ _SILENCED, _ADDED, _PLAIN = "#d55e00", "#009e73", "#b8b8b8"
 
 
 def draw(
-    G: GraphLike,
+    G: GraphLike | TimeVaryingGraph,
     result_or_attack: Any = None,
     *,
     pos: Mapping[Hashable, Sequence[float]] | None = None,
@@ -43,8 +45,9 @@ def draw(
 
     Parameters
     ----------
-    G : networkx Graph or DiGraph, or Digraph
-        An arc ``(u, v)`` means v hears u.
+    G : networkx Graph or DiGraph, Digraph, or TimeVaryingGraph
+        An arc ``(u, v)`` means v hears u. Of a sequence, the union of the window that the answer is about, or of all
+        steps.
     result_or_attack : optional
         What to mark: the answer to a question about G (``check_rs_robustness``, ``determine_robustness``,
         ``tolerance``, a joint result, a trap, an attack, an outcome, a mended network), or the sets themselves,
@@ -71,9 +74,11 @@ def draw(
     -----
     Linear in the arcs, once nodes have places.
     """
-    graph = as_digraph(G)
+    drawn = _union_for(G, result_or_attack) if isinstance(G, TimeVaryingGraph) else G
+    graph = as_digraph(drawn)
     marks = marks_of(graph, result_or_attack)
-    places = positions_for(graph, marks, pos, positions_in(G))
+    known = positions_in(drawn)
+    places = positions_for(graph, marks, pos, known)
     if ax is None:
         try:
             from matplotlib import pyplot as plt
@@ -81,11 +86,17 @@ def draw(
             raise MissingExtra("drawing needs matplotlib: pip install 'graph-robustness[plot]'") from None
         ax = plt.subplots(figsize=_size(graph), layout="constrained")[1]
     _draw_on(ax, graph, marks, places)
-    if pos is None and positions_in(G) is None:
+    if pos is None and known is None:
         # Circles of ours stay circles, in a picture that is filled, so that no node of a flat one is cut off; maps and
         # users' places fill the picture as they are.
         ax.set_aspect("equal", adjustable="datalim")
     return ax
+
+
+def _union_for(sequence: TimeVaryingGraph, result: Any) -> GraphLike:
+    """Return the union of the window that an answer about a sequence shows, or of all steps."""
+    pictured: GraphLike | None = result.pictured() if isinstance(result, Shown) else None
+    return sequence.union(0, len(sequence)) if pictured is None else pictured
 
 
 def draw_to_file(

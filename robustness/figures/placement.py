@@ -12,12 +12,16 @@ import numpy as np
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
 from robustness.figures.marking import Marks
-from robustness.files.places import place_of
+from robustness.places import place_of, two_numbers
 
 __all__ = ["Positions", "positions_for", "positions_in"]
 
 #: Where each node stands, by id.
 Positions = dict[int, tuple[float, float]]
+
+#: The angle of the first node of a circle: nearly upright, so that two or four nodes do not lie on one line with those
+#: of another circle beside it.
+_TURN = 1.25
 
 #: A denser graph looks best on one circle.
 _DENSE = 0.5
@@ -26,7 +30,7 @@ _DENSE = 0.5
 def positions_in(network: Any) -> dict[Hashable, tuple[float, float]] | None:
     """Return the places that a networkx graph's node attributes give, or None unless every node has one.
 
-    Which attributes are read, :func:`robustness.files.places.place_of` says.
+    Which attributes are read, :func:`robustness.places.place_of` says.
     """
     if isinstance(network, Digraph):
         network = network.to_networkx()
@@ -40,14 +44,6 @@ def positions_in(network: Any) -> dict[Hashable, tuple[float, float]] | None:
         found[node] = place
     # One point for all is no layout.
     return found if len(found) < 2 or len(set(found.values())) > 1 else None
-
-
-def _numbers(across: Any, up: Any) -> tuple[float, float] | None:
-    try:
-        x, y = float(across), float(up)
-    except (TypeError, ValueError):
-        return None
-    return (x, y) if math.isfinite(x) and math.isfinite(y) else None
 
 
 def positions_for(
@@ -76,7 +72,7 @@ def positions_for(
         places = {}
         for i, label in enumerate(graph.labels):
             place = given[label]
-            pair = _numbers(*place) if len(place) == 2 else None
+            pair = two_numbers(*place) if len(place) == 2 else None
             if pair is None:
                 raise InvalidParameter(f"the position of {label!r} is two finite numbers, not {place!r}")
             places[i] = pair
@@ -93,7 +89,7 @@ def _sides(graph: Digraph, marks: Marks) -> Positions:
     others = frozenset(range(graph.n)) - marks.S1 - marks.S2 - marks.M
     apart = marks.M - marks.S1 - marks.S2
     places: Positions = {}
-    radius = {name: 0.22 * math.sqrt(max(len(group), 1)) for name, group in
+    radius = {name: 0.3 * math.sqrt(max(len(group), 2)) for name, group in
               (("S1", marks.S1), ("S2", marks.S2), ("M", apart), ("rest", others))}  # fmt: skip
     wide = max(radius["S1"], radius["S2"], (radius["M"] if apart else 0.0), (radius["rest"] if others else 0.0))
     reach = wide + max(radius["S1"], radius["S2"]) + 0.45
@@ -113,9 +109,8 @@ def _circle(nodes: list[int], centre: tuple[float, float], radius: float) -> Pos
     if len(nodes) == 1:
         return {nodes[0]: centre}
     turn = 2 * math.pi / max(len(nodes), 1)
-    # A turn of a little, so that two or four nodes do not lie on one line with another circle.
     return {
-        node: (centre[0] + radius * math.cos(0.4 + k * turn), centre[1] + radius * math.sin(0.4 + k * turn))
+        node: (centre[0] + radius * math.cos(_TURN + k * turn), centre[1] + radius * math.sin(_TURN + k * turn))
         for k, node in enumerate(nodes)
     }
 

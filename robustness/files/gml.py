@@ -15,8 +15,8 @@ from typing import Any
 from robustness.digraph import Digraph
 from robustness.errors import UnreadableTopology
 from robustness.files.found import Found, Link, Node, ReadingOptions, graph_of
-from robustness.files.places import place_of
 from robustness.files.text import decode_utf8, texts_of, warn_lossy
+from robustness.places import place_of
 
 __all__ = ["decode", "encode"]
 

@@ -25,7 +25,7 @@ from typing import Any
 from robustness.errors import UnreadableTopology
 from robustness.files.found import COLUMN_NAMES, Found, Link, Node
 from robustness.files.json_text import flag, kind_of, label_of, list_of, plain_label
-from robustness.files.places import place_of
+from robustness.places import place_of
 
 __all__ = ["found_in"]
 

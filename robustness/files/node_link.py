@@ -21,8 +21,8 @@ from robustness.errors import UnreadableTopology
 from robustness.files.found import Found, Link, Node, ReadingOptions, graph_of
 from robustness.files.json_shapes import found_in
 from robustness.files.json_text import flag, kind_of, label_of, list_of, parse_json
-from robustness.files.places import place_of
 from robustness.files.text import decode_utf8
+from robustness.places import place_of
 
 __all__ = ["decode", "encode"]
 

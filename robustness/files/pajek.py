@@ -13,9 +13,9 @@ from collections.abc import Callable, Hashable
 from robustness.digraph import Digraph
 from robustness.errors import InvalidGraph, UnreadableTopology
 from robustness.files.found import Found, Link, Node, ReadingOptions, graph_of
-from robustness.files.places import place_of
 from robustness.files.rows import is_number
 from robustness.files.text import decode_utf8, texts_of, warn_lossy
+from robustness.places import place_of
 
 __all__ = ["decode", "encode"]
 

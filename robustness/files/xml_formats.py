@@ -19,8 +19,8 @@ from xml.parsers import expat
 from robustness.digraph import Digraph
 from robustness.errors import UnreadableTopology
 from robustness.files.found import Found, Link, Node, ReadingOptions, graph_of
-from robustness.files.places import place_of
 from robustness.files.text import texts_of, warn_lossy
+from robustness.places import place_of
 
 if TYPE_CHECKING:
     import networkx as nx

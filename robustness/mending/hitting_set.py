@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import random
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from robustness.digraph import Digraph
@@ -57,7 +57,9 @@ def with_actions(graph: Digraph, actions: Actions, chosen: Iterable[int]) -> Dig
     """Return the network with the links of the chosen actions."""
     labels = graph.labels
     arcs = [*graph.arcs(), *(arc for a in sorted(chosen) for arc in actions.items[a].arcs)]
-    return Digraph(labels, ((labels[u], labels[v]) for u, v in arcs), directed=graph.directed)
+    said: dict[Hashable, Mapping[str, object]] = dict(graph.node_attributes.items())
+    joined = ((labels[u], labels[v]) for u, v in arcs)
+    return Digraph(labels, joined, directed=graph.directed, node_attributes=said)
 
 
 @dataclass(slots=True)

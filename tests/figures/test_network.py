@@ -275,3 +275,22 @@ def test_no_node_of_a_flat_picture_is_cut_off() -> None:
         radius = (group.get_sizes()[0] ** 0.5) / 2 * figure.dpi / 72
         for _, y in axes.transData.transform(group.get_offsets()):
             assert box.y0 + radius <= y <= box.y1 - radius
+
+
+def test_places_of_a_network_stay_with_what_is_made_of_it() -> None:
+    map_of_four = nx.path_graph(4)
+    nx.set_node_attributes(map_of_four, {k: (float(k), float(k * k)) for k in range(4)}, "pos")
+    map_of_four.add_node(2, colour="red", secret=object())
+    mended = rb.mend(map_of_four, 2)
+    axes = rb.draw(mended.graph, mended)
+    texts = {text.get_text(): text.get_position() for text in axes.texts}
+    assert {name: texts[name] for name in "0123"} == {str(k): (float(k), float(k * k)) for k in range(4)}
+    assert mended.graph.to_networkx().nodes[2] == {"pos": (2.0, 4.0)}
+
+
+def test_a_sequence_is_drawn_as_the_union_that_the_answer_is_about() -> None:
+    swarm = rb.TimeVaryingGraph.from_arcs(range(4), [[(0, 1), (1, 0)], [(1, 2), (2, 1)], [(2, 3), (3, 2)]], 3)
+    shorter = rb.check_joint_robustness(swarm, 1, window=2)
+    assert shorter.violation is not None
+    assert rb.draw(swarm, shorter).get_title()
+    assert {text.get_text() for text in rb.draw(swarm).texts} >= set("0123")

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-__all__ = ["place_of"]
+__all__ = ["place_of", "two_numbers"]
 
 #: Pairs of attributes that hold a place, horizontal first. GraphML of yEd has x and y (y points down there, which
 #: mirrors the picture and nothing else); topology collections have longitude and latitude.
@@ -29,14 +29,15 @@ def place_of(attributes: Mapping[str, Any]) -> tuple[float, float] | None:
     if isinstance(pos, str):
         pos = pos.rstrip("!").split(",")
     if isinstance(pos, Sequence) and len(pos) == 2:
-        return _numbers(*pos)
+        return two_numbers(*pos)
     for across, up in _PAIRS:
         if across in lowered and up in lowered:
-            return _numbers(lowered[across], lowered[up])
+            return two_numbers(lowered[across], lowered[up])
     return None
 
 
-def _numbers(across: Any, up: Any) -> tuple[float, float] | None:
+def two_numbers(across: Any, up: Any) -> tuple[float, float] | None:
+    """Return two finite numbers, or None."""
     try:
         x, y = float(across), float(up)
     except (TypeError, ValueError):
