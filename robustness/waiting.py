@@ -11,12 +11,15 @@ from collections.abc import Callable
 from concurrent.futures import Future, wait
 from typing import TypeVar
 
-__all__ = ["in_a_thread"]
+__all__ = ["GRACE", "in_a_thread"]
 
 _Result = TypeVar("_Result")
 
 #: Seconds between two looks.
 _STEP = 0.1
+
+#: Seconds that work is given to end after it was asked to stop; then it is left to itself.
+GRACE = 0.25
 
 
 def in_a_thread(
@@ -34,8 +37,8 @@ def in_a_thread(
     work : callable
         What takes long.
     stop : callable or None
-        Makes ``work`` end soon; called when the wait is broken off, which then lasts until it has ended. None: it
-        cannot be stopped, and is left to itself; the process does not wait for it.
+        Makes ``work`` end soon; called when the wait is broken off, which then lasts for ``GRACE`` seconds at most.
+        None: it cannot be stopped. What does not end is left to itself; the process does not wait for it.
     while_waiting : callable
         Called ten times a second; what it raises breaks the wait off.
     """
@@ -55,6 +58,6 @@ def in_a_thread(
     except BaseException:
         if stop is not None:
             stop()
-            worker.join()
+            worker.join(GRACE)
         raise
     return outcome.result()

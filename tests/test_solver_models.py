@@ -8,6 +8,7 @@ import sys
 import time
 from itertools import product
 from pathlib import Path
+from types import SimpleNamespace
 
 import networkx as nx
 import pytest
@@ -207,11 +208,33 @@ def test_a_passed_deadline_starts_no_solver(algorithm, options):
 
 
 def test_a_solver_that_overruns_its_limit_is_left_alone(monkeypatch):
-    monkeypatch.setattr(model_solving, "_GRACE", 0.1)
+    monkeypatch.setattr(model_solving, "GRACE", 0.1)
     monkeypatch.setattr(model_solving, "_parameters", lambda kind, limits: five_seconds())
     answer = cp_sat.decide(HARD, 14, 1, Limits(deadline=time.monotonic() + 0.3))
     assert answer.verdict is Verdict.UNDECIDED
     assert "did not stop" in answer.stats["reason"]
+
+
+def test_what_cp_sat_says_after_its_limit_proves_nothing(monkeypatch):
+    from ortools.math_opt.python import mathopt
+
+    bounds = SimpleNamespace(dual_bound=5.0)
+    termination = SimpleNamespace(reason=mathopt.TerminationReason.INFEASIBLE, objective_bounds=bounds)
+    result = SimpleNamespace(termination=termination, solve_stats=SimpleNamespace(node_count=0), solutions=[])
+
+    def late(*_args: object, params: mathopt.SolveParameters, **_options: object) -> object:
+        if params.time_limit is not None:
+            time.sleep(params.time_limit.total_seconds() + 0.05)
+        return result
+
+    monkeypatch.setattr(mathopt, "solve", late)
+    assert cp_sat.decide(HARD, 14, 1, NO_LIMITS, pair_counting=False).verdict is Verdict.ROBUST
+    answer = cp_sat.decide(HARD, 14, 1, Limits(deadline=time.monotonic() + 0.1), pair_counting=False)
+    assert answer.verdict is Verdict.UNDECIDED
+    assert "after its limit" in answer.stats["reason"]
+    for bound_of in (cp_sat.largest_r, lambda graph, limits: cp_sat.largest_s(graph, 14, limits)):
+        assert bound_of(HARD, NO_LIMITS).lower.value > 0
+        assert bound_of(HARD, Limits(deadline=time.monotonic() + 0.5)).lower.value == 0
 
 
 def five_seconds() -> object:

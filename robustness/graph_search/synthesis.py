@@ -9,9 +9,10 @@ CP-SAT proposes.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -24,11 +25,8 @@ from robustness.graph_search.model import GraphModel
 from robustness.graph_search.properties import Connected, HasTrap, Property, RSRobust
 from robustness.limits import UNBOUNDED, Limits, Progress
 from robustness.results import Verdict
+from robustness.solver_calls import solve_within
 from robustness.traps.smallest import smallest_trap
-from robustness.waiting import in_a_thread
-
-if TYPE_CHECKING:
-    from ortools.sat.python import cp_model
 
 __all__ = ["Synthesis", "small_violations", "synthesise"]
 
@@ -92,40 +90,25 @@ def _propose_until_it_fits(
     limits: Limits,
 ) -> Digraph | None:
     """Return a graph that fits (with an objective: an optimal one), or None when there is none."""
-    from ortools.sat.python import cp_model
-
     while True:
-        solver = cp_model.CpSolver()
-        solver.parameters.num_workers = limits.jobs
-        solver.parameters.random_seed = limits.seed % (1 << 31)
-        if limits.deadline is not None:
-            solver.parameters.max_time_in_seconds = max(limits.seconds_left(), 1e-3)
-        status = _solve(solver, model.model)
-        if status == cp_model.INFEASIBLE:
+        outcome = solve_within(model.model, limits)
+        if outcome.is_infeasible:
             return None
-        if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-            if status == cp_model.MODEL_INVALID:
-                raise InternalError("CP-SAT refused the model of a graph search: please report")
+        if model.model.has_objective() and outcome.bound > 0:
+            found.edges_at_least = max(found.edges_at_least, math.ceil(outcome.bound - 1e-6))
+        if not outcome.has_solution:
             raise Undecided("the time limit was reached")
-        if model.model.has_objective():
-            found.edges_at_least = max(found.edges_at_least, round(solver.best_objective_bound))
-        proposal = model.candidate(solver)
+        proposal = model.candidate(outcome.solver)
         found.stats["proposals"] += 1
         if limits.progress is not None:
             limits.progress(Progress(found.stats["proposals"], f"{found.stats['constraints']} constraints learnt"))
         learnt = _learn(model, proposal, satisfies, violates, limits)
         found.stats["constraints"] += learnt
         if not learnt:
-            if model.model.has_objective() and status != cp_model.OPTIMAL:
+            if model.model.has_objective() and not outcome.is_optimal:
                 found.graph = proposal
                 raise Undecided("the time limit was reached")
             return proposal
-
-
-def _solve(solver: cp_model.CpSolver, model: cp_model.CpModel) -> cp_model.CpSolverStatus:
-    """Run the solver so that Ctrl-C reaches Python at once and then stops the solver."""
-    solver.parameters.catch_sigint_signal = False
-    return in_a_thread("robustness-graph-search", lambda: solver.solve(model), solver.stop_search)
 
 
 def _learn(

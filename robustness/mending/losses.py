@@ -33,7 +33,7 @@ from robustness.mending.goal import Part, goals_of, parts_of
 from robustness.mending.oracle import violates
 from robustness.natural_order import natural_key
 from robustness.showing import Shown
-from robustness.traps.cp_sat import solve_within
+from robustness.solver_calls import solve_within
 from robustness.traps.question import Sets
 
 __all__ = ["Margin", "margin"]
@@ -203,17 +203,21 @@ def _least(graph: Digraph, part: Part, of_nodes: bool, limits: Limits) -> _Least
             model.add(sum(counted) <= most)
     _bound_the_exempt(model, graph, part, exempt, outside, gone, cut)
     model.minimize(sum(gone) if of_nodes else sum(_links(graph, cut).values()))
-    status, solver = solve_within(model, limits)
-    if status == cp_model.INFEASIBLE:
+    outcome = solve_within(model, limits)
+    if outcome.is_infeasible:
         return _Least(None, None)
-    if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+    if not outcome.has_solution:
         return _Least(None, 0)
-    links = tuple(ends for ends, each in _links(graph, cut).items() if solver.value(each)) if not of_nodes else ()
-    nodes = tuple(i for i in range(n) if solver.value(gone[i]))
-    sides = [frozenset(i for i in range(n) if solver.value(normal[i][k]) or solver.value(exempt[i][k])) for k in (0, 1)]
-    bad = frozenset(i for i in range(n) if solver.value(outside[i]) or (question and any(map(solver.value, exempt[i]))))
+    links = tuple(ends for ends, each in _links(graph, cut).items() if outcome.value(each)) if not of_nodes else ()
+    nodes = tuple(i for i in range(n) if outcome.value(gone[i]))
+    sides = [
+        frozenset(i for i in range(n) if outcome.value(normal[i][k]) or outcome.value(exempt[i][k])) for k in (0, 1)
+    ]
+    bad = frozenset(
+        i for i in range(n) if outcome.value(outside[i]) or (question and any(map(outcome.value, exempt[i])))
+    )
     _check(graph, part, Sets(bad, *sides), links, nodes)
-    bound = len(links) + len(nodes) if status == cp_model.OPTIMAL else math.ceil(solver.best_objective_bound - 1e-6)
+    bound = len(links) + len(nodes) if outcome.is_optimal else math.ceil(max(0, outcome.bound) - 1e-6)
     return _Least((links, nodes), max(bound, 0))
 
 

@@ -32,7 +32,7 @@ from robustness.digraph import Digraph
 from robustness.limits import Limits
 from robustness.mending.actions import Actions
 from robustness.mending.demands import Side, Unit, masks_of, units, unlocalizers
-from robustness.traps.cp_sat import solve_within
+from robustness.solver_calls import solve_within
 
 __all__ = ["Master", "Proposal"]
 
@@ -95,20 +95,18 @@ class Master:
 
     def solve(self, limits: Limits, hint: frozenset[int] | None, effort: float | None = None) -> Proposal:
         """Return the cheapest choice, as far as the limits, and the solver's units of effort, allow."""
-        from ortools.sat.python import cp_model
-
         self._model.clear_hints()  # type: ignore[no-untyped-call]
         if hint is not None:
             for a, x in enumerate(self._x):
                 self._model.add_hint(x, a in hint)
-        status, solver = solve_within(self._model, limits, effort, relaxed=True)
-        if status == cp_model.INFEASIBLE:
+        outcome = solve_within(self._model, limits, effort, relaxed=True)
+        if outcome.is_infeasible:
             return Proposal(None, None, is_optimal=False)
-        bound = max(0, math.ceil(solver.best_objective_bound - 1e-6))
-        if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+        bound = math.ceil(max(0, outcome.bound) - 1e-6)
+        if not outcome.has_solution:
             return Proposal(None, bound, is_optimal=False)
-        chosen = frozenset(a for a, x in enumerate(self._x) if solver.value(x))
-        if status == cp_model.OPTIMAL:
+        chosen = frozenset(a for a, x in enumerate(self._x) if outcome.value(x))
+        if outcome.is_optimal:
             return Proposal(chosen, sum(self._actions.items[a].cost for a in chosen), is_optimal=True)
         return Proposal(chosen, bound, is_optimal=False)
 

@@ -28,8 +28,8 @@ from typing import Any
 from robustness.digraph import Digraph
 from robustness.errors import InternalError
 from robustness.limits import Limits
+from robustness.solver_calls import solve_within
 from robustness.time_varying import TimeVaryingGraph
-from robustness.traps.cp_sat import solve_within
 from robustness.traps.question import Question, Sets, obeys_bound
 
 __all__ = ["Remembered", "find_in_all", "holds_apart", "idle_steps"]
@@ -150,13 +150,13 @@ def _solve(
         if with_before:
             for graph in remembered.before:
                 _require(model, graph, f, i, member, bad, 1)
-    status, solver = solve_within(model, limits)
-    if status == cp_model.INFEASIBLE:
+    outcome = solve_within(model, limits)
+    if outcome.is_infeasible:
         return False, None
-    if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+    if not outcome.has_solution:
         return None, None
-    M = frozenset(i for i in range(n) if solver.value(bad[i]))
-    S1, S2 = (frozenset(i for i in range(n) if solver.value(member[i][r])) for r in range(2))
+    M = frozenset(i for i in range(n) if outcome.value(bad[i]))
+    S1, S2 = (frozenset(i for i in range(n) if outcome.value(member[i][r])) for r in range(2))
     return True, Sets(M, S1, S2)
 
 

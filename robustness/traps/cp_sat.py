@@ -20,12 +20,11 @@ from __future__ import annotations
 from typing import Any
 
 from robustness.digraph import Digraph
-from robustness.errors import InternalError
 from robustness.limits import Limits
+from robustness.solver_calls import solve_within
 from robustness.traps.question import Question, Sets, TrapAnswer
-from robustness.waiting import in_a_thread
 
-__all__ = ["decide", "solve_within"]
+__all__ = ["decide"]
 
 
 def decide(graph: Digraph, question: Question, limits: Limits) -> TrapAnswer:
@@ -49,17 +48,17 @@ def decide(graph: Digraph, question: Question, limits: Limits) -> TrapAnswer:
         model.add(sum(malicious) <= question.f)
     for k in range(2):
         model.add_bool_or([sides[k] for sides in normal])
-    status, solver = solve_within(model, limits)
-    stats = {"solver_status": solver.status_name(status).lower()}
-    if status == cp_model.INFEASIBLE:
+    outcome = solve_within(model, limits)
+    stats = {"solver_status": outcome.said}
+    if outcome.is_infeasible:
         return TrapAnswer(False, stats=stats)
-    if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+    if not outcome.has_solution:
         return TrapAnswer.undecided("the solver stopped without an answer", stats)
-    bad = frozenset(i for i, each in enumerate(malicious) if solver.value(each))
+    bad = frozenset(i for i, each in enumerate(malicious) if outcome.value(each))
     S1, S2 = (
         frozenset(
             i for i in range(graph.n)
-            if solver.value(normal[i][k]) or (not question.two_faces and solver.value(inside[i][k]))
+            if outcome.value(normal[i][k]) or (not question.two_faces and outcome.value(inside[i][k]))
         )
         for k in range(2)
     )  # fmt: skip
@@ -80,30 +79,3 @@ def _variables(model: Any, graph: Digraph, question: Question) -> tuple[list[Any
     if graph.n:
         model.add_implication(normal[int(graph.in_degrees.argmax())][1], False)
     return normal, inside, malicious
-
-
-def solve_within(model: Any, limits: Limits, effort: float | None = None, *, relaxed: bool = False) -> tuple[Any, Any]:
-    """Return the status and the solver. Ctrl-C is served while it runs, and stops it. A crash of the solver is an
-    InternalError. ``effort`` bounds the work in the solver's own units, which are counted and not timed. ``relaxed``
-    puts more of it into the linear relaxation: better bounds, for models whose rows are sums, rather than solutions.
-    """
-    from ortools.sat.python import cp_model
-
-    solver = cp_model.CpSolver()
-    solver.parameters.num_workers = limits.jobs
-    solver.parameters.random_seed = limits.seed % (1 << 31)
-    solver.parameters.catch_sigint_signal = False
-    if limits.deadline is not None:
-        solver.parameters.max_time_in_seconds = max(limits.seconds_left(), 1e-3)
-    if effort is not None:
-        solver.parameters.max_deterministic_time = effort
-    if relaxed:
-        solver.parameters.linearization_level = 2
-
-    def work() -> Any:
-        try:
-            return solver.solve(model)
-        except Exception as problem:
-            raise InternalError(f"the solver failed: {problem}: please report") from problem
-
-    return in_a_thread("robustness-cp-sat", work, solver.stop_search), solver

@@ -27,15 +27,14 @@ from robustness.errors import InternalError, Undecided
 from robustness.evidence import Exhausted, Pair
 from robustness.limits import Limits, Progress
 from robustness.results import Bound, Bounds, Witness
-from robustness.waiting import in_a_thread
+from robustness.solver_calls import has_passed
+from robustness.waiting import GRACE, in_a_thread
 
 if TYPE_CHECKING:
     from ortools.math_opt.python import mathopt
 
 __all__ = ["decide", "largest_r", "largest_s", "verdict_of"]
 
-#: Solvers look at their clock now and then only; past this many seconds their thread is left alone.
-_GRACE = 0.25
 #: Three years: what the solvers are told for longer limits, which would overflow them.
 _LONGEST = 1e8
 #: A dual bound may exceed the integer it stands for by the solvers' tolerance (1e-6, times the size of the bound).
@@ -53,7 +52,7 @@ def decide(graph: Digraph, r: int, s: int, limits: Limits, solver: str, *, pair_
         if not any(compatible):
             return Answer(Exhausted(), stats | {"solver_status": "not needed: pair counting"})
         problem = pair_model(graph, r, s, compatible)
-        result = _solve(problem.model, solver, limits)
+        result, was_stopped = _solve(problem.model, solver, limits)
     except Undecided as limit:
         return Answer.undecided(str(limit), stats)
     reason = result.termination.reason
@@ -61,6 +60,8 @@ def decide(graph: Digraph, r: int, s: int, limits: Limits, solver: str, *, pair_
     verdict = verdict_of(reason)
     if verdict is Verdict.UNDECIDED:
         return Answer.undecided(_limit_text(result.termination), stats)
+    if verdict is Verdict.ROBUST and was_stopped:
+        return Answer.undecided(f"{solver} answered after its limit, which proves nothing", stats)
     if verdict is Verdict.ROBUST:
         return Answer(Exhausted(), stats)
     pair = _best_pair(problem, result)
@@ -95,16 +96,16 @@ def largest_s(graph: Digraph, r: int, limits: Limits, solver: str, *, pair_count
     try:
         compatible = compatible_pairs(graph, r, graph.n, limits) if pair_counting else all_pairs(graph.n)
         problem = pair_model(graph, r, None, compatible)
-        result = _solve(problem.model, solver, limits)
+        result, was_stopped = _solve(problem.model, solver, limits)
     except Undecided:
         return nothing
-    if verdict_of(result.termination.reason) is Verdict.ROBUST:
+    if verdict_of(result.termination.reason) is Verdict.ROBUST and not was_stopped:
         return Bounds(Bound(graph.n, f"{solver}: no violating pair for any s"), nothing.upper)
     upper, pair = nothing.upper, _best_pair(problem, result)
     if pair is not None and is_violation(graph, pair.first, pair.second, r, graph.n):
         exempt = sum(len(r_reachable_ids(graph, side, r)) for side in pair)
         upper = Bound(exempt, "violating pair", Witness.of(graph, pair))
-    return Bounds(_lower(result, solver, upper.value), upper)
+    return Bounds(nothing.lower if was_stopped else _lower(result, solver, upper.value), upper)
 
 
 def largest_r(graph: Digraph, limits: Limits, solver: str) -> Bounds:
@@ -114,14 +115,14 @@ def largest_r(graph: Digraph, limits: Limits, solver: str) -> Bounds:
     nothing = Bounds.trivial(graph)
     problem = largest_r_model(graph)
     try:
-        result = _solve(problem.model, solver, limits)
+        result, was_stopped = _solve(problem.model, solver, limits)
     except Undecided:
         return nothing
     upper, pair = nothing.upper, _best_pair(problem, result)
     if pair is not None and pair.first and pair.second and not pair.first & pair.second:
         most = max(sum(j not in side for j in graph.in_neighbours(i).tolist()) for side in pair for i in side)
         upper = min(upper, Bound(most, "violating pair", Witness.of(graph, pair)), key=lambda bound: bound.value)
-    return Bounds(_lower(result, solver, upper.value), upper)
+    return Bounds(nothing.lower if was_stopped else _lower(result, solver, upper.value), upper)
 
 
 def _lower(result: mathopt.SolveResult, solver: str, upper: int) -> Bound:
@@ -145,8 +146,11 @@ def _limit_text(termination: mathopt.Termination) -> str:
     return f"the solver stopped with {termination.reason.name.lower()}{limit}{detail}"
 
 
-def _solve(model: mathopt.Model, solver: str, limits: Limits) -> mathopt.SolveResult:
-    """Run a solver in a worker thread until it answers, or raise Undecided soon after the deadline."""
+def _solve(model: mathopt.Model, solver: str, limits: Limits) -> tuple[mathopt.SolveResult, bool]:
+    """Run a solver in a worker thread until it answers, or raise Undecided soon after the deadline.
+
+    Return also whether it is CP-SAT and was stopped: then only its solutions count (:mod:`robustness.solver_calls`).
+    """
     from ortools.math_opt.python import mathopt
     from ortools.util.python.solve_interrupter import SolveInterrupter
 
@@ -158,16 +162,17 @@ def _solve(model: mathopt.Model, solver: str, limits: Limits) -> mathopt.SolveRe
     started = time.monotonic()
 
     def look() -> None:
-        if limits.deadline is not None and time.monotonic() > limits.deadline + _GRACE:
+        if has_passed(limits, time.monotonic() - GRACE):
             raise Undecided(f"the time limit was reached and {solver} did not stop: raise the limit")
         if limits.progress is not None:
             limits.progress(Progress(0, f"{solver} is at work, {time.monotonic() - started:.0f} s"))
 
-    def work() -> mathopt.SolveResult:
+    def work() -> tuple[mathopt.SolveResult, bool]:
         try:
-            return mathopt.solve(model, kind, params=parameters, interrupter=interrupter)
+            result = mathopt.solve(model, kind, params=parameters, interrupter=interrupter)
         except Exception as problem:
             raise InternalError(f"{solver} failed ({problem}): please report, and use another algorithm") from problem
+        return result, interrupter is not None and has_passed(limits, time.monotonic())
 
     stop = None if interrupter is None else interrupter.interrupt
     return in_a_thread(f"robustness-{solver.lower()}", work, stop, look)
