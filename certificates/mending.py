@@ -9,8 +9,11 @@ cost what is claimed, and make the network reach every part: by one certificate 
 And that every pair is a violation of a part in the graph as it is. By the lemma on choices in
 docs/certificate-format.md it is then one of every graph that picks none of the actions that bring it an arc.
 
-That no cheaper choice breaks all of these violations is no business of the kernel: it is a problem in integers that the
-certificate holds whole, for any solver.
+A *cover* is a family of sets of nodes such that every arc of the graph lies inside one. What it demands of a choice
+that reaches (2,s)-robustness is the lemma on spreading there; only that it is a cover is checked.
+
+That no cheaper choice breaks all of these violations, and does what the covers demand, is no business of the kernel: it
+is a problem in integers that the certificate holds whole, for any solver.
 """
 
 from __future__ import annotations
@@ -30,7 +33,7 @@ __all__ = ["FORMAT", "MAX_LOOKS", "VerifiedMendingClaim", "verify_mending"]
 
 FORMAT = "robustness/mending-certificate/1"
 
-#: Pairs times nodes and arcs of the graph: at most so many are looked at.
+#: Pairs times nodes and arcs of the graph, and covers times nodes: at most so many are looked at.
 MAX_LOOKS = 2**32
 
 #: No number of a certificate is larger.
@@ -58,16 +61,18 @@ class VerifiedMendingClaim:
     mended_sha256: str = ""
     #: Nodes of search trees that were replayed.
     tree_nodes: int = 0
+    covers: int = 0
 
     def __str__(self) -> str:
         graph = f"the graph with {self.nodes} nodes, {self.arcs} arcs and SHA-256 {self.sha256}"
         reached = ""
         if self.cost is not None:
             reached = f"reaches the goal, {self.goal}, with {self.links} links of cost {self.cost}, and "
+        covers = f" and {self.covers} covers" if self.covers else ""
         rest = "no choice does" if self.least is None else f"this costs at least {self.least}"
         return (
-            f"{graph} {reached}has {self.violations} violations that every choice of links that reaches the goal, "
-            f"{self.goal}, has to break; that {rest} is left to a solver"
+            f"{graph} {reached}has {self.violations} violations{covers} that every choice of links that reaches the "
+            f"goal, {self.goal}, has to break; that {rest} is left to a solver"
         )
 
 
@@ -90,7 +95,7 @@ def verify_mending(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedMend
     RejectedCertificate
         When the certificate does not prove its claim about this graph.
     """
-    keys = "claim actions pairs lengths"
+    keys = "claim actions pairs covers lengths"
     document, body = open_certificate(graph_bytes, certificate_bytes, "graph", [FORMAT], keys)
     claim = require_keys(document["claim"], "the claim", "parts cost least")
     graph = decode_graph(graph_bytes)
@@ -107,10 +112,12 @@ def verify_mending(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedMend
     mended, links = _check_choice(graph, document["actions"], claim["cost"])
     for pair in pairs:
         _check_pair(graph, parts, pair)
+    _check_covers(graph, parts, _list(document["covers"], "covers"))
     tree_nodes = _check_parts(mended, parts, document["lengths"], body)
     return VerifiedMendingClaim(
         " and ".join(words) or "anything", claim["cost"], claim["least"], links, len(pairs),
         graph.sha256, graph.n, graph.arc_count, "" if mended is None else digest(mended), tree_nodes,
+        len(document["covers"]),
     )  # fmt: skip
 
 
@@ -174,6 +181,31 @@ def _check_pair(graph: CanonicalGraph, parts: list[Part], pair: Any) -> None:
         check_violation(graph, part["r"], part["s"], sets)
     else:
         check_sets(graph, part["f"], part["faces"], part["bound"], sets)
+
+
+def _check_covers(graph: CanonicalGraph, parts: list[Part], covers: list[Any]) -> None:
+    """Each is about a part with r = 2, and every arc of the graph as it is lies inside one of its sets."""
+    masks: list[int] = []
+    looks = graph.arc_count * (1 + graph.n // 1024)
+    for cover in covers:
+        if not isinstance(cover, list) or not cover or type(cover[0]) is not int or not 0 <= cover[0] < len(parts):
+            raise MalformedCertificate("a cover is [part, V, ...]")
+        if parts[cover[0]].get("r") != 2:
+            raise MalformedCertificate("a cover belongs to a part with r = 2")
+        sets = [id_set(ids, graph.n, "a set of a cover") for ids in cover[1:]]
+        looks += (graph.n + sum(map(len, sets))) * (1 + graph.n // 1024)
+        if looks > MAX_LOOKS:
+            raise MalformedCertificate(f"the covers take more than {MAX_LOOKS} looks at nodes")
+        masks = masks or [sum(1 << j for j in heard) for heard in graph.hears]
+        inside = [0] * graph.n
+        for V in sets:
+            if len(V) < 2:
+                raise MalformedCertificate("a set of a cover has two nodes or more")
+            mask = sum(1 << i for i in V)
+            for i in V:
+                inside[i] |= mask
+        if any(heard & ~near for heard, near in zip(masks, inside, strict=True)):
+            raise RejectedCertificate("an arc lies inside no set of a cover")
 
 
 def _check_parts(mended: bytes | None, parts: list[Part], lengths: Any, body: bytes) -> int:

@@ -11,6 +11,7 @@ from robustness.decision.certification import certify
 from robustness.digraph import Digraph
 from robustness.errors import InternalError, InvalidParameter
 from robustness.limits import Limits, Progress
+from robustness.mending.demands import bits
 from robustness.mending.goal import Part
 from robustness.mending.hitting_set import with_actions
 from robustness.mending.results import MendResult, Problem
@@ -104,11 +105,16 @@ def _encoded(problem: Problem, proofs: list[bytes]) -> bytes:
             [problem.parts.index(part), *(sorted(ids) for ids in sets)]
             for part, sets in problem.pairs
         ],
+        "covers": [
+            [problem.parts.index(part), *sorted(sorted(bits(V)) for V in cover)]
+            for part, cover in problem.covers
+        ],
         "lengths": [len(proof) for proof in proofs],
     }  # fmt: skip
     data = json.dumps(header, separators=(",", ":")).encode("ascii") + b"\n" + b"".join(proofs)
     proven = verify_mending(problem.graph.canonical_bytes(), data)
-    if (proven.cost, proven.least, proven.violations) != (cost, problem.least, len(problem.pairs)):
+    known = (cost, problem.least, len(problem.pairs), len(problem.covers))
+    if (proven.cost, proven.least, proven.violations, proven.covers) != known:
         raise InternalError(f"the certificate proves {proven}, which was not the claim: please report")
     return data
 

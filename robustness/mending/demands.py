@@ -20,6 +20,7 @@ none, and what G + A leaves open is left open by G + B for every B inside A.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 from robustness.digraph import Digraph
@@ -99,10 +100,7 @@ def units(side: Side, n: int) -> Iterator[Unit]:
 
 def worth(side: Side, heard: Masks) -> int:
     """Return how much a side is worth in the network with these in-neighbour masks."""
-    around, enough = outside(side, (1 << len(heard)) - 1), side.part.enough
-    normal = side.S & ~side.M
-    met = sum((heard[i] & around).bit_count() >= enough for i in bits(normal))
-    return side.part.s if met == normal.bit_count() else min(met, side.part.s)
+    return _met(side, heard, side.part.s)
 
 
 def unlocalizers(side: Side, n: int) -> Iterator[Unit]:
@@ -123,8 +121,28 @@ def fit(first: Side, second: Side) -> bool:
 
 def holds_apart(first: Side, second: Side, heard: Masks) -> bool:
     """Return whether two sides that fit violate their condition in the network."""
-    if worth(first, heard) + worth(second, heard) >= first.part.s:
+    s = first.part.s
+    met = _met(first, heard, s)
+    if met >= s or met + _met(second, heard, s - met) >= s:
         return False
     return not any(
         (heard[unit.node] & unit.outside).bit_count() >= unit.enough for unit in unlocalizers(first, len(heard))
     )
+
+
+def _met(side: Side, heard: Masks, wanted: int) -> int:
+    """Return the worth of a side, counted no further than wanted."""
+    members, around, enough = _members(side, len(heard))
+    met = 0
+    for i in members:
+        if (heard[i] & around).bit_count() >= enough:
+            met += 1
+            if met >= wanted:
+                return met
+    return wanted if met == len(members) else met
+
+
+@lru_cache(maxsize=1 << 16)
+def _members(side: Side, n: int) -> tuple[tuple[int, ...], int, int]:
+    """Return the nodes of a side's units, what counts for them, and how much of it is enough."""
+    return tuple(bits(side.S & ~side.M)), outside(side, (1 << n) - 1), side.part.enough

@@ -246,9 +246,10 @@ def _problem(search: Search) -> Problem:
         pairs = (search.witness,) if search.witness[1].S1 else ()
     else:
         pairs = tuple((first.part, sets_of(first, second)) for first, second in search.rows)
+    covers = () if search.is_impossible and search.witness is not None else tuple(search.covers)
     beyond_budget = search.is_impossible and search.witness is None and search.actions.budget is not None
     least = None if search.is_impossible and not beyond_budget else search.bound
-    return Problem(search.graph, search.actions, tuple(search.parts), search.best, least, pairs)
+    return Problem(search.graph, search.actions, tuple(search.parts), search.best, least, pairs, covers)
 
 
 def _demand(part: Part, graph: Digraph, sets: Sets) -> Demand:

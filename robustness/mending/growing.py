@@ -7,7 +7,7 @@ what it does not find, the exact search does.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from robustness.mending.demands import Side, bits, holds_apart, worth
 from robustness.mending.goal import Part
@@ -15,10 +15,13 @@ from robustness.mending.goal import Part
 __all__ = ["every_pair", "grown_sides", "shrunk"]
 
 
-def grown_sides(heard: Sequence[int], part: Part, M: int = 0) -> Iterator[Side]:
+def grown_sides(
+    heard: Sequence[int], part: Part, M: int = 0, in_time: Callable[[], None] = lambda: None
+) -> Iterator[Side]:
     """Yield sides of worth below s in the network with these in-neighbour masks: from every node, and every arc.
 
-    For traps with two faces M is given; violations with one face are left to the exact search.
+    ``in_time`` is called again and again, and may raise. For traps with two faces M is given; violations with one face
+    are left to the exact search.
     """
     if part.trap is not None and not part.trap.two_faces:
         return
@@ -29,6 +32,7 @@ def grown_sides(heard: Sequence[int], part: Part, M: int = 0) -> Iterator[Side]:
     seeds += [1 << i | 1 << j for i in range(n) for j in bits(heard[i]) if j < i or not heard[j] >> i & 1]
     for seed in seeds:
         for spared in (0, seed) if part.s > 1 and seed.bit_count() == 1 else (0,):
+            in_time()
             if seed & M:
                 continue
             S = _grow(heard, seed, everybody, part.enough, spared)
@@ -51,16 +55,18 @@ def every_pair(heard: Sequence[int], part: Part) -> Iterator[tuple[Side, Side]]:
 
 def _grow(heard: Sequence[int], seed: int, everybody: int, enough: int, spared: int) -> int:
     """Return the grown set, or 0 when it becomes everything."""
-    S = seed
-    while True:
-        crowded = next((i for i in bits(S & ~spared) if (heard[i] & everybody & ~S).bit_count() >= enough), None)
-        if crowded is None:
-            return S if spared == 0 or S != seed else 0
-        # The newcomer that asks for the fewest others.
-        choices = list(bits(heard[crowded] & everybody & ~S))
-        S |= 1 << min(choices, key=lambda j: ((heard[j] & everybody & ~S).bit_count(), j))
+    S, waiting = seed, list(bits(seed & ~spared))
+    while waiting:
+        crowded = waiting.pop()
+        # A node that hears little from outside hears no more when the set grows.
+        while (outside := heard[crowded] & everybody & ~S).bit_count() >= enough:
+            # The newcomer that asks for the fewest others.
+            newcomer = min(bits(outside), key=lambda j: ((heard[j] & everybody & ~S).bit_count(), j))
+            S |= 1 << newcomer
+            waiting.append(newcomer)
         if S == everybody:
             return 0
+    return S if spared == 0 or S != seed else 0
 
 
 def shrunk(first: Side, second: Side, heard: Sequence[int]) -> tuple[Side, Side]:

@@ -4,7 +4,9 @@ An implicit hitting set (Moreno-Centeno and Karp 2013). Each round the master pr
 that it leaves open are found, by growing sides and then exactly; a repair breaks them one after the other until the
 network reaches the goal, and gives up what is superfluous. Every violation met on the way becomes a demand: it is open
 under the proposal, since the proposal lies inside the repaired choice. The proposal's cost is a lower bound, the
-repaired choice an upper one; both improve until they meet.
+repaired choice an upper one; both improve until they meet. Every second round asks the master only for some choice that
+costs less than the best one and meets all demands: that is quicker, its violations are harder to evade, and when there
+is none the best is optimal. Between rounds the best is taken apart a little and repaired in another way.
 """
 
 from __future__ import annotations
@@ -15,9 +17,10 @@ from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from robustness.digraph import Digraph
-from robustness.errors import Undecided
+from robustness.errors import InternalError, Undecided
 from robustness.limits import Limits, Progress
 from robustness.mending.actions import Actions
+from robustness.mending.construction import grown_choices
 from robustness.mending.demands import (
     Side,
     Unit,
@@ -32,20 +35,28 @@ from robustness.mending.demands import (
 )
 from robustness.mending.goal import Part
 from robustness.mending.growing import every_pair, grown_sides, shrunk
-from robustness.mending.master import Master
+from robustness.mending.master import Master, Proposal
 from robustness.mending.oracle import first_violation
+from robustness.mending.spreading import Cover, lacking, rigid_components
 from robustness.traps.question import Sets
 
 __all__ = ["Search", "with_actions"]
 
-#: How many orders of giving up superfluous links are tried in a round.
-_ORDERS = 3
+#: How many orders of giving up superfluous links are tried in a round; one when there are more links than so many.
+_ORDERS, _MANY = 3, 40
 
 #: Pairs of grown sides are added all together up to so many, beyond that only those that a proposal leaves open.
 _MOST_PAIRS = 300
 
-#: The solver's units of effort for the first bound: about a second.
-_FIRST_EFFORT = 1.0
+#: Then a new side is paired with so many others, the smallest.
+_MOST_PARTNERS = 8
+
+#: The solver's units of effort for the first bound, about a second, and for a call in the first round; in the rounds it
+#: grows by a factor whenever a call did not finish.
+_FIRST_EFFORT, _EFFORT, _GROWTH = 1.0, 4.0, 1.3
+
+#: At most so many links of the best choice are taken away at once, to be replaced by others.
+_MOST_SHAKEN = 4
 
 #: On so few nodes every violation of (r,s)-robustness is a demand from the start: faster than to solve again and again.
 _FEW = 8
@@ -78,6 +89,8 @@ class Search:
         What no choice can break; then the goal is out of reach.
     rows : list of pairs of sides
         The demands that the master problem holds.
+    covers : list of (Part, Cover)
+        The covers behind its other rows (:mod:`robustness.mending.spreading`).
     """
 
     graph: Digraph
@@ -92,10 +105,12 @@ class Search:
     is_impossible: bool = False
     reason: str = ""
     rows: list[Pair] = field(default_factory=list)
+    covers: list[tuple[Part, Cover]] = field(default_factory=list)
     _base: list[int] = field(default_factory=list)
     _seen: set[Pair] = field(default_factory=set)
     _pool: dict[tuple[Part, int], dict[int, Side]] = field(default_factory=dict)
     _master: Master | None = None
+    _effort: float = _EFFORT
     _into: dict[int, list[tuple[int, int]]] = field(default_factory=lambda: defaultdict(list))
 
     def cost(self, chosen: Iterable[int]) -> int:
@@ -124,41 +139,81 @@ class Search:
             self.is_impossible = self.witness is not None
             if self.is_impossible:
                 return
-            self._master = Master(self.graph, self.actions)
-            self._grow(self._base)
-            for part in self.parts:
-                if part.trap is None and self.graph.n <= _FEW:
-                    for pair in every_pair(self._base, part):
-                        self._learn(*pair)
-            # A bound before the first repair, which can take long; counted, so that it is the same on every machine.
-            self.bound = self._master.solve(self.limits.share(0.5), None, _FIRST_EFFORT).bound or 0
-            self._tell()
-            self._improve(self._repair(self.actions.required, 0))
+            self._start()
             turn = 1
             while not self.is_done:
-                self._round(self._master, turn)
+                self._round(turn)
                 turn += 1
         except Undecided:
             self.reason = "the time limit was reached"
 
-    def _round(self, master: Master, turn: int) -> None:
-        """Propose, and repair; raise :class:`Undecided` when a limit came."""
-        proposal = master.solve(self.limits.share(0.7), self.best)
-        if proposal.bound is None:
-            self._rule_out()
+    def _start(self) -> None:
+        """Find a first choice, write the first demands, and find the first bound and better choices."""
+        grown = sorted(grown_choices(self._base, self.parts, self.actions), key=self.cost)
+        for chosen in grown:
+            if self.best is None and self._is_enough(chosen):
+                self._improve(chosen)
+        if self.is_done:
             return
-        if proposal.bound > self.bound:
-            self.bound = proposal.bound
-            self._tell()
-        if proposal.chosen is not None and not self.is_optimal:
-            known = len(self.rows)
-            self._grow(self._heard(proposal.chosen))
+        self._master = Master(self.graph, self.actions, self.limits)
+        if self.best is not None:
+            self._master.stay_below(self.cost(self.best))
+        self._spread(self._base)
+        self._grow(self._base)
+        for part in self.parts:
+            if part.trap is None and self.graph.n <= _FEW:
+                for pair in every_pair(self._base, part):
+                    self._learn(*pair)
+        # A bound before the first repair, which can take long; counted, so that it is the same on every machine.
+        self._believe(self._master.solve(self.limits.share(0.5), None, _FIRST_EFFORT))
+        self._tell()
+        if not self.is_done:
+            self._improve(self._repair(grown[0] if grown else self.actions.required, 0))
+
+    def _is_enough(self, chosen: Iterable[int]) -> bool:
+        """Return whether a choice reaches the goal, by the exact search alone."""
+        return first_violation(with_actions(self.graph, self.actions, chosen), self.parts, self.limits) is None
+
+    def _round(self, turn: int) -> None:
+        """Propose, and repair; raise :class:`Undecided` when a limit came."""
+        if self._master is None:
+            raise InternalError("a round without a master problem: please report")
+        any_choice = turn % 2 == 0 and self.best is not None
+        proposal = self._master.solve(self.limits.share(0.7), self.best, self._effort, any_choice=any_choice)
+        self._believe(proposal)
+        if (not any_choice and not proposal.is_optimal) or proposal.chosen is None:
+            self._effort *= _GROWTH
+        if proposal.chosen is not None and not self.is_done:
+            known = len(self.rows), len(self.covers)
+            heard = self._heard(proposal.chosen)
+            self._spread(heard)
+            self._grow(heard)
             repaired = self._repair(proposal.chosen, turn)
-            if len(self.rows) == known and proposal.is_optimal:  # the proposal itself reaches the goal
+            if (len(self.rows), len(self.covers)) == known and proposal.is_optimal:  # it reaches the goal itself
                 self.bound = max(self.bound, self.cost(proposal.chosen))
             self._improve(repaired)
+        if not self.is_done and self.best is not None:
+            self._improve(self._shaken(self.best, turn))
         if not self.is_done and self.limits.expired():
             raise Undecided("the limit came before the bounds met")
+
+    def _believe(self, proposal: Proposal) -> None:
+        """Take in what a call of the solver says about the bound."""
+        if proposal.bound is None:
+            if self.best is None:
+                self._rule_out()
+            else:
+                self.bound = max(self.bound, self.cost(self.best))
+        elif proposal.bound > self.bound:
+            self.bound = proposal.bound
+            self._tell()
+
+    def _shaken(self, chosen: frozenset[int], turn: int) -> frozenset[int] | None:
+        """Return another choice that reaches the goal: some links are taken away, and what is open repaired."""
+        rng = random.Random(f"{self.limits.seed} {turn} shaken")
+        movable = sorted(chosen - self.actions.required)
+        gone = rng.sample(movable, min(len(movable), rng.randint(2, _MOST_SHAKEN)))
+        return self._repair(chosen.difference(gone), turn)
 
     def _rule_out(self) -> None:
         """No choice meets the demands; with a budget, none within it: then it is a bound on the cost."""
@@ -184,6 +239,8 @@ class Search:
             return
         if self.best is None or self.cost(chosen) < self.cost(self.best):
             self.best = chosen
+            if self._master is not None:
+                self._master.stay_below(self.cost(chosen))
             self._tell()
 
     def _grow(self, heard: Sequence[int]) -> None:
@@ -191,19 +248,33 @@ class Search:
         for part in self.parts:
             known = {M for other, M in self._pool if other == part} | ({0} if part.trap is None else set())
             for M in sorted(known):
-                for side in grown_sides(heard, part, M):
+                for side in grown_sides(heard, part, M, self._in_time):
                     self._take(side, heard)
-                    self._in_time()
+
+    def _spread(self, heard: Sequence[int]) -> None:
+        """Take the best cover of a network into the master problem, for conditions with r = 2."""
+        for part in self.parts:
+            if part.trap is None and part.r == 2 and self._master is not None:
+                cover = rigid_components(heard)
+                self._in_time()
+                if lacking(cover, len(heard), part.r) > 0 and (part, cover) not in self.covers:
+                    self.covers.append((part, cover))
+                    self._master.add_cover(part, cover)
 
     def _take(self, side: Side, heard: Sequence[int]) -> None:
         """Add a side to the pool; pair it with all others there that fit."""
         group = self._pool.setdefault((side.part, side.M), {})
         if side.S in group:
             return
-        for other in list(group.values()):
-            if fit(side, other) and (len(self.rows) < _MOST_PAIRS or holds_apart(side, other, heard)):
+        partners = 0
+        for other in sorted(group.values(), key=lambda each: (each.S.bit_count(), each.S)):
+            is_early = len(self.rows) < _MOST_PAIRS
+            if not is_early and (partners == _MOST_PARTNERS or not holds_apart(side, other, heard)):
+                continue
+            if fit(side, other):
                 self._learn(side, other)
                 self._in_time()
+                partners += 1
         group[side.S] = side
 
     def _learn(self, first: Side, second: Side) -> None:
@@ -232,8 +303,11 @@ class Search:
             if not self._break(pair, chosen, rng):
                 return None
 
-    def _open_pair(self, chosen: Iterable[int]) -> Pair | None:
-        """Return a demand that the choice does not meet: a known one, else the oracle's; None when all are met."""
+    def _open_pair(self, chosen: Iterable[int], *, thorough: bool = True) -> Pair | None:
+        """Return a demand that the choice does not meet: a known one, else the oracle's; None when all are met.
+
+        ``thorough``: what the oracle finds is followed by all that grows in this network.
+        """
         if self.limits.expired():
             raise Undecided("the limit came during a repair")
         heard = self._heard(chosen)
@@ -247,7 +321,8 @@ class Search:
         for side in (first, second):
             self._take(side, heard)
         self._learn(first, second)
-        self._grow(heard)
+        if thorough:
+            self._grow(heard)
         return first, second
 
     def _break(self, pair: Pair, chosen: set[int], rng: random.Random) -> bool:
@@ -304,7 +379,7 @@ class Search:
     def _reduced(self, chosen: frozenset[int], rng: random.Random) -> frozenset[int]:
         """Return the choice without what is superfluous: no single action can go. Several orders are tried."""
         best: frozenset[int] | None = None
-        for turn in range(_ORDERS):
+        for turn in range(_ORDERS if len(chosen) <= _MANY else 1):
             kept = set(chosen)
             order = sorted(kept - self.actions.required)
             rng.shuffle(order)
@@ -312,7 +387,7 @@ class Search:
                 order.sort(key=lambda a: -self.actions.items[a].cost)
             for a in order:
                 kept.discard(a)
-                if self._open_pair(kept) is None:
+                if self._open_pair(kept, thorough=False) is None:
                     self._improve(frozenset(kept))
                 else:
                     kept.add(a)

@@ -10,10 +10,14 @@ Over ``x_a`` (action a is chosen), ``y_u`` (the unit u is met) and for every sid
     sum of x_a over the actions that bring an arc into i <= most_i             every capped i
     sum of c_a x_a <= budget                                                   if there is one
     x_a = 1                                                                    required a
+    w_U >= s z,   sum of x_a over the actions outside a cover >= lacking (1 - z)   every start U and cover
 
 For s = 1 the worth is 0 or 1, and one more inequality helps the relaxation: some unit of a side of worth 1 is met in
 full, so ``sum over u, a of (L / m_u) x_a >= L w_S`` for a common multiple L of what the units miss. Of sides that are
 disjoint in pairs all but one are worth something: the solver finds this by itself, because sides are shared by pairs.
+
+The last rows are those of :mod:`robustness.mending.spreading`: ``z``, one for each condition with r = 2,
+says that no two linked nodes take everything in.
 
 Every choice that reaches the goal fulfils all of this, whichever pairs are known; so the minimum is a lower bound on
 the cost. Where all links are alike (:attr:`~robustness.mending.actions.Actions.uniform`), nodes with equal neighbours
@@ -29,9 +33,12 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 from robustness.digraph import Digraph
-from robustness.limits import Limits
+from robustness.errors import Undecided
+from robustness.limits import UNBOUNDED, Limits
 from robustness.mending.actions import Actions
 from robustness.mending.demands import Side, Unit, masks_of, units, unlocalizers
+from robustness.mending.goal import Part
+from robustness.mending.spreading import Cover, lacking, starts_of
 from robustness.solver_calls import solve_within
 
 __all__ = ["Master", "Proposal"]
@@ -43,7 +50,7 @@ _LARGEST_MULTIPLE = 5040
 class Proposal(NamedTuple):
     """What the solver said: a choice (indices; None without one), a proven lower bound, and whether it is optimal.
 
-    ``bound`` is None when no choice can meet the demands.
+    ``bound`` is None when no choice can meet the demands, within the budget and below what is known.
     """
 
     chosen: frozenset[int] | None
@@ -54,9 +61,10 @@ class Proposal(NamedTuple):
 class Master:
     """The master problem, to which pairs of sides are added between solves."""
 
-    def __init__(self, graph: Digraph, actions: Actions) -> None:
+    def __init__(self, graph: Digraph, actions: Actions, limits: Limits = UNBOUNDED) -> None:
         from ortools.sat.python import cp_model
 
+        self._limits = limits
         self._model = cp_model.CpModel()
         self._actions = actions
         self._n = graph.n
@@ -65,6 +73,7 @@ class Master:
         self._units: dict[Unit, Any] = {}
         self._sides: dict[Side, Any] = {}
         self._freed: dict[Side, Any] = {}
+        self._slow: dict[Part, Any] = {}
         self._into: dict[int, list[tuple[int, int]]] = defaultdict(list)
         for a, item in enumerate(actions.items):
             for tail, head in item.arcs:
@@ -76,10 +85,9 @@ class Master:
                 self._model.add(sum(self._x[a] for _, a in self._into[i]) <= most)
         if actions.uniform:
             self._break_symmetry(graph)
-        cost = sum(item.cost * x for item, x in zip(actions.items, self._x, strict=True))
+        self._cost = sum(item.cost * x for item, x in zip(actions.items, self._x, strict=True))
         if actions.budget is not None:
-            self._model.add(cost <= actions.budget)
-        self._model.minimize(cost)
+            self._model.add(self._cost <= actions.budget)
 
     def add(self, first: Side, second: Side) -> None:
         """Add one demand: two sides that fit."""
@@ -93,20 +101,42 @@ class Master:
         else:
             self._model.add(sum(worths) + s * freed >= s)
 
-    def solve(self, limits: Limits, hint: frozenset[int] | None, effort: float | None = None) -> Proposal:
-        """Return the cheapest choice, as far as the limits, and the solver's units of effort, allow."""
+    def add_cover(self, part: Part, cover: Cover) -> None:
+        """Add the demand of the lemma on spreading: so many links outside the cover, or every start is worth s."""
+        if part not in self._slow:
+            self._slow[part] = self._model.new_bool_var("")
+            for U in starts_of(self._heard):
+                self._model.add(self._worth(Side(part, 0, U)) >= part.s * self._slow[part])
+        outer = [x for item, x in zip(self._actions.items, self._x, strict=True) if not _lies_inside(item.ends, cover)]
+        missing = lacking(cover, self._n, part.r)
+        self._model.add(sum(outer) >= missing * (1 - self._slow[part]))
+
+    def stay_below(self, cost: int) -> None:
+        """Look only for what costs less from now on."""
+        self._model.add(self._cost <= cost - 1)
+
+    def solve(
+        self, limits: Limits, hint: frozenset[int] | None, effort: float | None = None, *, any_choice: bool = False
+    ) -> Proposal:
+        """Return the cheapest choice, as far as the limits, and the solver's units of effort, allow.
+
+        ``any_choice``: any that meets the demands; nothing is said about the bound unless there is none.
+        """
         self._model.clear_hints()  # type: ignore[no-untyped-call]
+        self._model.clear_objective()  # type: ignore[no-untyped-call]
+        if not any_choice:
+            self._model.minimize(self._cost)
         if hint is not None:
             for a, x in enumerate(self._x):
                 self._model.add_hint(x, a in hint)
-        outcome = solve_within(self._model, limits, effort, relaxed=True)
+        outcome = solve_within(self._model, limits, effort, relaxed=not any_choice)
         if outcome.is_infeasible:
             return Proposal(None, None, is_optimal=False)
-        bound = math.ceil(max(0, outcome.bound) - 1e-6)
+        bound = 0 if any_choice else math.ceil(max(0, outcome.bound) - 1e-6)
         if not outcome.has_solution:
             return Proposal(None, bound, is_optimal=False)
         chosen = frozenset(a for a, x in enumerate(self._x) if outcome.value(x))
-        if outcome.is_optimal:
+        if outcome.is_optimal and not any_choice:
             return Proposal(chosen, sum(self._actions.items[a].cost for a in chosen), is_optimal=True)
         return Proposal(chosen, bound, is_optimal=False)
 
@@ -119,6 +149,8 @@ class Master:
     def _met(self, unit: Unit) -> Any:
         """Return the variable that the unit is met; 1 when it is met without any action."""
         if unit not in self._units:
+            if self._limits.expired():
+                raise Undecided("the limit came while the master problem was written")
             missing, suppliers = self._missing(unit), self._suppliers(unit)
             met = self._model.new_bool_var("")
             if missing <= 0:
@@ -175,6 +207,11 @@ class Master:
             for u, v in pairwise(alike):
                 gains = [sum(self._x[a] for _, a in self._into[i]) for i in (u, v)]
                 self._model.add(gains[0] >= gains[1])
+
+
+def _lies_inside(ends: tuple[int, int], cover: Cover) -> bool:
+    both = 1 << ends[0] | 1 << ends[1]
+    return any(not both & ~V for V in cover)
 
 
 def _twins(graph: Digraph) -> list[Sequence[int]]:

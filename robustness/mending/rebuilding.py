@@ -9,6 +9,8 @@ states it: over ``x_a`` (a link is chosen), ``y_iO`` (node i hears enough of the
     f_S <= y_iO                                                                  every normal i of S
     sum over both sides of y, and of s f_S        >=  s                          (r,s)-robustness
     sum over both sides of y, and of z            >=  1                          traps and violations
+    sum over both nodes of y, and of s f_S        >=  s z                         every two linked nodes S = {u, v}
+    sum of the links inside no set of a cover     >=  what it lacks (1 - z)       every cover; one z for each part
     caps and required links
 
 and, where every link that is not there can be added at one cost without constraints, for nodes u < v that hear and are
@@ -162,6 +164,11 @@ class _Rebuilt:
             self._order_twins()
         for k, *sets in document["pairs"]:
             self._break(document["claim"]["parts"][k], *map(frozenset, sets))
+        self._slow: dict[int, Any] = {}
+        for k, *sets in document["covers"]:
+            if k not in self._slow:
+                self._slow[k] = self._nothing_spreads(document["claim"]["parts"][k]["s"])
+            self._need_links_outside(sets, self._slow[k])
 
     def _all_alike(self, actions: dict[str, Any]) -> bool:
         """Return whether every link that is not there can be added, all at one cost, without constraints."""
@@ -192,16 +199,35 @@ class _Rebuilt:
         terms = []
         for S in (S1, S2):
             around = everybody - S - (M if not robust and part["faces"] == 2 else frozenset())
-            met = [self._unit(i, around, enough) for i in sorted(S - M)]
-            terms += met
-            if s > 1:
-                full = self._model.add_binary_variable()
-                for each in met:
-                    self._model.add_linear_constraint(full <= each)
-                terms.append(s * full)
+            terms += self._worth(sorted(S - M), around, enough, s)
         if not robust and part["bound"] == "local":
             terms += [self._unit(i, M, enough) for i in sorted(everybody - M)]
         self._model.add_linear_constraint(self._sum(terms) >= s)
+
+    def _worth(self, nodes: Iterable[int], around: frozenset[int], enough: int, s: int) -> list[Any]:
+        """Return the terms of a side's worth: y of its nodes, and s times whether all of them hear enough."""
+        met = [self._unit(i, around, enough) for i in nodes]
+        if s == 1:
+            return met
+        full = self._model.add_binary_variable()
+        for each in met:
+            self._model.add_linear_constraint(full <= each)
+        return [*met, s * full]
+
+    def _nothing_spreads(self, s: int) -> Any:
+        """Return the variable that no two linked nodes take the whole network in: then they are worth s."""
+        slow = self._model.add_binary_variable()
+        everybody = frozenset(range(self._n))
+        for u, v in {(min(i, j), max(i, j)) for i, heard in enumerate(self._hears) for j in heard}:
+            self._model.add_linear_constraint(self._sum(self._worth((u, v), everybody - {u, v}, 2, s)) >= s * slow)
+        return slow
+
+    def _need_links_outside(self, cover: list[list[int]], slow: Any) -> None:
+        """Add the row of one cover: a set of m nodes has room for 2m - 3 arcs by which nodes are taken in."""
+        sets = [frozenset(V) for V in cover]
+        lacking = 2 * self._n - 3 - sum(2 * len(V) - 3 for V in sets)
+        outer = (x for (u, v), x in zip(self._links, self._x, strict=True) if not any({u, v} <= V for V in sets))
+        self._model.add_linear_constraint(self._sum(outer) >= lacking * (1 - slow))
 
     def _unit(self, i: int, around: frozenset[int], enough: int) -> Any:
         key = (i, around, enough)

@@ -61,7 +61,9 @@ class Problem:
     least : int or None
         The lower bound in units of the actions' scale; None when no choice reaches the goal.
     pairs : tuple of (Part, Sets)
-        Violations of ``graph`` from which the bound follows.
+        Violations of ``graph`` from which the bound follows,
+    covers : tuple of (Part, masks of nodes)
+        and covers of its links (:mod:`robustness.mending.spreading`).
     """
 
     graph: Digraph
@@ -70,6 +72,7 @@ class Problem:
     chosen: frozenset[int] | None
     least: int | None
     pairs: tuple[tuple[Part, Sets], ...]
+    covers: tuple[tuple[Part, tuple[int, ...]], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -33,6 +33,14 @@ GOALS = [
 PATH = as_digraph(nx.path_graph(5))
 
 
+def both(*changes: Callable[[dict[str, Any]], object]) -> Callable[[dict[str, Any]], None]:
+    def change(document: dict[str, Any]) -> None:
+        for each in changes:
+            each(document)
+
+    return change
+
+
 @cache
 def made(goal: rb.Goal = GOALS[1], one_way: bool = False) -> bytes:
     data = certify_mending(rb.mend(PATH, goal, one_way=one_way, require=[(0, 2)], max_in_degree=4))
@@ -92,8 +100,23 @@ def test_a_bound_that_is_too_high_is_refuted_by_the_other_solver(goal: rb.Goal) 
 
 
 def test_without_its_violations_a_bound_does_not_follow() -> None:
-    found = confirm_least(PATH.canonical_bytes(), changed(made(), put("pairs", value=[])))
+    bare = changed(changed(made(), put("pairs", value=[])), put("covers", value=[]))
+    found = confirm_least(PATH.canonical_bytes(), bare)
     assert found.verdict is LeastVerdict.REFUTED
+
+
+def test_covers_bear_the_bound_and_are_of_parts_with_r_2() -> None:
+    """With its covers alone, that of the path shows what (2,2) needs; a cover with less room in it proves less."""
+    subject, alone = PATH.canonical_bytes(), changed(made(), put("pairs", value=[]))
+    assert verify_mending(subject, made()).covers > 0
+    assert "covers" in str(verify_mending(subject, made()))
+    assert json.loads(made().partition(b"\n")[0])["covers"][0][0] == 0
+    wide = changed(alone, put("covers", value=[[0, [0, 1, 2, 3, 4]]]))
+    assert confirm_least(subject, wide).verdict is LeastVerdict.REFUTED
+    with pytest.raises(MalformedCertificate, match="r = 2"):
+        verify_mending(subject, changed(made(GOALS[2]), put("covers", value=[[0, [0, 1, 2, 3, 4]]])))
+    with pytest.raises(MalformedCertificate, match="r = 2"):
+        verify_mending(subject, changed(made(GOALS[4]), put("covers", value=[[0, [0, 1, 2, 3, 4]]])))
 
 
 def test_a_limit_leaves_the_bound_undecided() -> None:
@@ -166,7 +189,11 @@ FORGERIES: list[tuple[Callable[[dict[str, Any]], object], type[CertificateError]
     (put("claim", "least", value=None), RejectedCertificate, "least cost"),
     (put("claim", "least", value=10**6), RejectedCertificate, "least cost"),
     (put("claim", "parts", value={}), MalformedCertificate, "parts is a list"),
-    (put("claim", "parts", 0, "r", value=3), RejectedCertificate, "does not prove that the goal"),
+    (
+        both(put("covers", value=[]), put("claim", "parts", 0, "r", value=3)),
+        RejectedCertificate,
+        "does not prove that the goal",
+    ),
     (put("claim", "parts", 0, "s", value=5), RejectedCertificate, "does not"),
     (put("claim", "parts", 0, "r", value=0), MalformedCertificate, "at least 1"),
     (put("claim", "parts", 0, "f", value=0), MalformedCertificate, "keys r s"),
@@ -192,6 +219,11 @@ FORGERIES: list[tuple[Callable[[dict[str, Any]], object], type[CertificateError]
     (put("pairs", 0, value=[0, [1], [0], [3]]), MalformedCertificate, "M is empty"),
     (put("pairs", 0, value=[0, [], [0], [0]]), RejectedCertificate, "disjoint"),
     (put("pairs", 0, value=[0, [], [1], [3]]), RejectedCertificate, "does not violate"),
+    (put("covers", value=None), MalformedCertificate, "covers is a list"),
+    (put("covers", value=[[7, [0, 1, 2, 3, 4]]]), MalformedCertificate, "a cover is"),
+    (put("covers", value=[[0, [4]]]), MalformedCertificate, "two nodes or more"),
+    (put("covers", value=[[0, [0, 1], [1, 2], [2, 3]]]), RejectedCertificate, "inside no set of a cover"),
+    (put("covers", value=[[0, [1, 0]]]), MalformedCertificate, "a set of a cover"),
     (put("lengths", value=[0]), MalformedCertificate, "lengths is a list"),
     (put("lengths", value=[1]), MalformedCertificate, "add up"),
     (put("lengths", value=None), MalformedCertificate, "lengths is a list"),
@@ -274,8 +306,11 @@ def test_one_way_links_of_a_directed_graph() -> None:
 def test_work_is_limited(monkeypatch: pytest.MonkeyPatch) -> None:
     network = nx.cycle_graph(6)
     data = certify_mending(rb.mend(network, 2))
+    assert data is not None
     graph = as_digraph(network).canonical_bytes()
     verify_mending(graph, data)
     monkeypatch.setattr("certificates.mending.MAX_LOOKS", 17)
     with pytest.raises(MalformedCertificate, match="pairs take more than 17 looks at nodes and arcs"):
         verify_mending(graph, data)
+    with pytest.raises(MalformedCertificate, match="covers take more than 17 looks at nodes"):
+        verify_mending(graph, changed(data, put("pairs", value=[])))

@@ -1,0 +1,55 @@
+"""What a stopped solver says never ends a search; the clock is looked at while the master problem is written."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import networkx as nx
+import pytest
+
+import robustness as rb
+from robustness.digraph import as_digraph
+from robustness.errors import Undecided
+from robustness.limits import Limits
+from robustness.mending import MendVerdict, losses, master
+from robustness.mending.actions import actions_for
+from robustness.mending.goal import Part
+from robustness.mending.spreading import rigid_components
+from robustness.solver_calls import Outcome
+
+
+@pytest.mark.parametrize("said", ["optimal", "infeasible", "abandoned"])
+def test_mending_never_ends_by_what_a_stopped_call_said(monkeypatch: pytest.MonkeyPatch, said: str) -> None:
+    """Every call is stopped, whatever it says: nothing is impossible, and nothing optimal."""
+    monkeypatch.setattr(master, "solve_within", lambda *_, **__: Outcome(said))
+    found = rb.mend(nx.path_graph(9), (2, 2), time_limit=1.0)
+    assert found.verdict is MendVerdict.FEASIBLE
+    assert found.lower_bound == 0
+    assert rb.is_rs_robust(found.graph, 2, 2)
+
+
+def test_a_margin_never_comes_from_a_stopped_call(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(losses, "solve_within", lambda *_: Outcome("infeasible"))
+    found = rb.margin(nx.complete_graph(5), 3)
+    assert (found.losses, found.lower_bound, found.is_exact) == (None, 0, False)
+
+
+def test_the_master_problem_looks_at_the_clock_while_it_is_written() -> None:
+    graph = as_digraph(nx.path_graph(6))
+    actions = actions_for(graph, None, None, forbid=(), require=(), max_in_degree=None, one_way=False)
+    written = master.Master(graph, actions, Limits(deadline=time.monotonic() - 1))
+    with pytest.raises(Undecided):
+        written.add_cover(Part(2, 2), rigid_components(graph.in_masks))
+
+
+def test_a_call_for_any_choice_says_nothing_about_the_bound(monkeypatch: pytest.MonkeyPatch) -> None:
+    def said(*_: Any, **__: Any) -> Outcome:
+        return Outcome("optimal", bound=7.0, is_optimal=True)
+
+    monkeypatch.setattr(master, "solve_within", said)
+    graph = as_digraph(nx.path_graph(4))
+    actions = actions_for(graph, None, None, forbid=(), require=(), max_in_degree=None, one_way=False)
+    written = master.Master(graph, actions)
+    assert written.solve(Limits(), None).bound == 7
+    assert written.solve(Limits(), None, any_choice=True).bound == 0
