@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .mending import FILE, Kept, answer, goal_and_files, links_in, tell, tell_bought
+from .mending import FILE, Kept, answer, caps_in, costs_in, goal_and_files, links_in, tell, tell_bought
 from .options import graph_argument, load_graph
 from .output import Console
 from .query import Query, query_options
@@ -29,11 +29,20 @@ SCHEMA = "robustness/mend/1"
 @click.option("--candidates", type=FILE, metavar="FILE", help="A network whose links can be added; all unless given.")
 @click.option("--range", "reach", type=float, metavar="X", help="Links can be added between nodes X apart at most.")
 @click.option(
-    "--cost", type=click.Choice(("one", "distance")), default="one", show_default=True, help="What a link costs."
+    "--cost",
+    default="one",
+    show_default=True,
+    metavar="one|distance|ATTR",
+    help="What a link costs: one, its length, or this attribute (column) of it in the file of --candidates.",
 )
 @click.option("--forbid", type=FILE, metavar="FILE", help="A network whose links may not be added.")
 @click.option("--require", "required", type=FILE, metavar="FILE", help="A network whose links have to be added.")
-@click.option("--max-in-degree", type=click.IntRange(min=0), metavar="D", help="No node that gains links hears more.")
+@click.option(
+    "--max-in-degree",
+    "caps",
+    metavar="D|FILE",
+    help="No node that gains links hears more; in FILE lines NODE,D or a JSON object, for each node.",
+)
 @click.option(
     "--budget", type=float, metavar="B", help="Links for B together at most; without a goal, the most they buy."
 )
@@ -51,8 +60,9 @@ def command(
     cost: str,
     forbid: Path | None,
     required: Path | None,
-    max_in_degree: int | None,
+    caps: str | None,
     budget: float | None,
+    climbed: str | None,
     one_way: bool,
 ) -> None:
     """Which links make GRAPH robust, at least cost?
@@ -60,7 +70,8 @@ def command(
     The goal is -r R [-s S], or --survive F [--model M], or both. Positions for --range and --cost distance are those of
     the file. Exit code 0: these links, and nothing cheaper. 30: these links, or none yet, and a lower bound. 10: no
     choice of these candidates, within --budget, does it. With --budget and no goal: the greatest r, and then s, of
-    (r,s)-robustness that the budget buys. Ctrl-C prints the best links so far, checked, and the lower bound.
+    (r,s)-robustness that the budget buys, or with --model the most malicious nodes that are survived. Ctrl-C prints the
+    best links so far, checked, and the lower bound.
     """
     from robustness.files.writing import require_different_files
     from robustness.mending import MendResult, best_within, mend
@@ -68,19 +79,25 @@ def command(
 
     if candidates is not None and reach is not None:
         raise click.UsageError("give one of --candidates and --range.")
+    if cost not in ("one", "distance") and candidates is None:
+        raise click.UsageError(f"--cost {cost} is an attribute of the links in a file: give it with --candidates FILE.")
     require_different_files([source, candidates, forbid, required], kept.paths)
     graph = load_graph(source)
     places = _positions(source, graph) if reach is not None or cost == "distance" else {}
     wanted = links_in(candidates, graph) if reach is None else links_within(places, reach)
     forbidden, needed = links_in(forbid, graph) or [], links_in(required, graph) or []
-    price = None if cost == "one" else _distances(places)
+    price: Any = None
+    if cost == "distance":
+        price = _distances(places)
+    elif cost != "one" and candidates is not None:
+        price = costs_in(candidates, graph, cost)
 
     constraints: dict[str, Any] = {
         "candidates": wanted,
         "cost": price,
         "forbid": forbidden,
         "require": needed,
-        "max_in_degree": max_in_degree,
+        "max_in_degree": None if caps is None else caps_in(caps, graph),
         "one_way": True if one_way else None,
     }
 
@@ -93,7 +110,7 @@ def command(
             console,
             query,
             SCHEMA,
-            lambda line: best_within(graph, budget, **constraints, **query.effort(line)),
+            lambda line: best_within(graph, budget, model=climbed, **constraints, **query.effort(line)),
             kept,
         )
     found, is_interrupted = answer(console, query, work)

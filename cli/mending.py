@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import wraps
@@ -22,7 +24,19 @@ if TYPE_CHECKING:
     from robustness.digraph import Digraph
     from robustness.mending import BudgetResult, Goal, MendResult
 
-__all__ = ["FILE", "Kept", "answer", "goal_and_files", "goals_from", "links_in", "tell", "tell_bought"]
+__all__ = [
+    "FILE",
+    "Kept",
+    "answer",
+    "caps_in",
+    "costs_in",
+    "goal_and_files",
+    "goals_from",
+    "link_costs",
+    "links_in",
+    "tell",
+    "tell_bought",
+]
 
 #: A file that is read or written whole.
 FILE = click.Path(dir_okay=False, path_type=Path)
@@ -76,7 +90,10 @@ class Kept:
 
 
 def goal_and_files(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the options that name a goal and the files to write; the command gets ``goals`` and ``kept``."""
+    """Add the options that name a goal and the files to write; the command gets ``goals`` and ``kept``.
+
+    A command with a budget also gets ``climbed``: the threat model for which, without a goal, the budget buys the most.
+    """
 
     @wraps(command)
     def with_goal(
@@ -91,8 +108,10 @@ def goal_and_files(command: Callable[..., Any]) -> Callable[..., Any]:
         picture: Path | None,
         **own: Any,
     ) -> Any:
-        asked = r is not None or survive is not None or s is not None or model is not None
+        asked = r is not None or survive is not None or s is not None
         goals = goals_from(r, s, survive, model) if asked or own.get("budget") is None else ()
+        if "budget" in own:
+            own["climbed"] = None if goals else model
         kept = Kept(output, certificate, goal_certificate, picture)
         return command(*arguments, goals=goals, kept=kept, **own)
 
@@ -118,6 +137,57 @@ def links_in(path: Path | None, graph: Digraph) -> list[tuple[Hashable, Hashable
     """Return the links that a file lists: the links of a network in any format, whose nodes are those of GRAPH."""
     if path is None:
         return None
+    listed, named = _listed(path, graph)
+    labels = listed.labels
+    return list(dict.fromkeys((named[labels[u]], named[labels[v]]) for u, v in listed.arcs()))
+
+
+def costs_in(path: Path, graph: Digraph, attribute: str) -> dict[tuple[Hashable, Hashable], Any]:
+    """Return what the links that a file lists cost: this attribute of them."""
+    listed, named = _listed(path, graph)
+    return {(named[u], named[v]): cost for (u, v), cost in link_costs(listed, attribute, str(path)).items()}
+
+
+def link_costs(graph: Digraph, attribute: str, source: str) -> dict[tuple[Hashable, Hashable], Any]:
+    """Return this attribute of the links of a network that has been read, where they have it."""
+    from robustness.errors import UnreadableTopology
+
+    costs: dict[tuple[Hashable, Hashable], Any] = {
+        link: said[attribute] for link, said in graph.link_attributes.items() if attribute in said
+    }
+    if not costs:
+        have = sorted({name for said in graph.link_attributes.values() for name in said})
+        known = f"links here have: {', '.join(have[:12])}" if have else "its links have none"
+        raise UnreadableTopology(f"{source}: no link has an attribute {attribute!r}; {known}")
+    return costs
+
+
+def caps_in(text: str, graph: Digraph) -> int | dict[Hashable, int]:
+    """Return how much nodes may hear: a number for all, or what a file says of each."""
+    if text.isascii() and text.isdigit():
+        return int(text)
+    from robustness.errors import UnreadableTopology
+
+    path = Path(text)
+    try:
+        lines = path.read_text(encoding="utf-8")
+        rows = json.loads(lines).items() if lines.lstrip().startswith("{") else csv.reader(lines.splitlines())
+        caps = {str(node).strip(): int(cap) for node, cap in (row for row in rows if row)}
+    except OSError as problem:
+        raise click.UsageError(
+            f"--max-in-degree is a number, or a file that says it of each node: {problem}."
+        ) from None
+    except (ValueError, TypeError, RecursionError):
+        raise UnreadableTopology(f"{path}: not lines NODE,NUMBER, and no JSON object of numbers by node") from None
+    by_name = {str(label): label for label in graph.labels}
+    unknown = [name for name in caps if name not in by_name]
+    if unknown:
+        raise UnreadableTopology(f"{path}: the node {unknown[0]!r} is none of the network")
+    return {by_name[name]: cap for name, cap in caps.items()}
+
+
+def _listed(path: Path, graph: Digraph) -> tuple[Digraph, dict[Hashable, Hashable]]:
+    """Return the network that a file holds, and the labels of ``graph`` that its labels mean."""
     from robustness.errors import UnreadableTopology
     from robustness.files import read_topology
 
@@ -128,9 +198,7 @@ def links_in(path: Path | None, graph: Digraph) -> list[tuple[Hashable, Hashable
         raise UnreadableTopology(
             f"{path}: the node {unknown[0]!r} is none of the network: name links between its nodes"
         )
-    labels = listed.labels
-    pairs = ((by_name[str(labels[u])], by_name[str(labels[v])]) for u, v in listed.arcs())
-    return list(dict.fromkeys(pairs))
+    return listed, {label: by_name[str(label)] for label in listed.labels}
 
 
 def answer(

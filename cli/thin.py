@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .mending import FILE, Kept, answer, goal_and_files, links_in, tell
+from .mending import FILE, Kept, answer, goal_and_files, link_costs, links_in, tell
 from .options import graph_argument, load_graph
 from .output import Console
 from .query import Query, query_options
@@ -23,6 +23,9 @@ SCHEMA = "robustness/thin/1"
 @click.command("thin")
 @graph_argument
 @goal_and_files
+@click.option(
+    "--cost", default="one", show_default=True, metavar="one|ATTR", help="What a link costs: one, or this attribute."
+)
 @click.option("--keep", type=FILE, metavar="FILE", help="A network whose links may not go.")
 @query_options()
 def command(
@@ -32,6 +35,7 @@ def command(
     source: str,
     goals: tuple[Goal, ...],
     kept: Kept,
+    cost: str,
     keep: Path | None,
 ) -> None:
     """How many links of GRAPH can go while it keeps what is asked of it?
@@ -45,9 +49,10 @@ def command(
     require_different_files([source, keep], kept.paths)
     graph = load_graph(source)
     stay = links_in(keep, graph) or []
+    price = None if cost == "one" else link_costs(graph, cost, source)
 
     def work(line: Any, improved: Any) -> MendResult:
-        return thin(graph, goals, keep=stay, on_improvement=improved, **query.effort(line))
+        return thin(graph, goals, cost=price, keep=stay, on_improvement=improved, **query.effort(line))
 
     found, is_interrupted = answer(console, query, work)
     tell(ctx, console, query, SCHEMA, found, is_interrupted=is_interrupted, kept=kept)

@@ -68,6 +68,8 @@ class Digraph:
     read_as: str
     #: What a file says of its nodes beside their labels (``pos``, ``label``, ``id``), by label; no mathematics sees it.
     node_attributes: Mapping[Label, Mapping[str, object]]
+    #: What a file says of its links beside their ends (costs, weights), by the pair of labels as it names them.
+    link_attributes: Mapping[tuple[Label, Label], Mapping[str, object]]
     in_indptr: npt.NDArray[np.int64]
     in_indices: npt.NDArray[np.int32]
 
@@ -106,13 +108,12 @@ class Digraph:
         graph._build(labels, ends)
         graph.directed = directed
         graph.read_as = read_as
-        graph.node_attributes = MappingProxyType(
-            {plain_label(node): values for node, values in node_attributes.items()}
-        )
+        graph.node_attributes = {plain_label(node): values for node, values in node_attributes.items()}
         return graph
 
     def _build(self, given: Sequence[Hashable], ends: npt.NDArray[np.int64]) -> None:
         """Set labels and rows from the labels in the order given and arcs between their places."""
+        self.link_attributes = {}
         plain = [plain_label(label) for label in given]
         if len(set(plain)) < len(plain):
             _refuse_equal_texts(given, plain)

@@ -195,7 +195,12 @@ def links_of(
             f"{loops} of {len(body)} rows join a node with itself, as in a table of nodes: say where the ends of links "
             "stand with --columns source=1,target=2"
         )
-    links = [Link(row[source], row[target], one_way) for row, one_way in zip(body, own, strict=True)]
+    names = head or [str(k) for k in range(1, len(rows.cells[0]) + 1)]
+    others = [(k, name) for k, name in enumerate(names) if k not in (source, target)]
+    links = [
+        Link(row[source], row[target], one_way, {name: row[k] for k, name in others if k < len(row) and row[k]})
+        for row, one_way in zip(body, own, strict=True)
+    ]
     told.append(f"links between columns {source + 1} and {target + 1}")
     if head is not None and rows.may_have_head:
         told.append(f"header on line {rows.lines[0]} skipped")

@@ -16,7 +16,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from robustness.digraph import Digraph
+from robustness.digraph import Digraph, plain_label
 from robustness.errors import InvalidParameter, UnreadableTopology
 from robustness.files.text import warn_lossy
 
@@ -109,11 +109,14 @@ class Node:
 
 @dataclass(slots=True)
 class Link:
-    """A link of a file: its two ends by id, and whether it says of itself that it runs one way (None: nothing)."""
+    """A link of a file: its two ends by id, whether it says of itself that it runs one way (None: nothing), and what
+    else the file says of it.
+    """
 
     source: Hashable
     target: Hashable
     one_way: bool | None = None
+    attributes: Mapping[str, Any] | None = None
 
 
 @dataclass(slots=True)
@@ -184,13 +187,19 @@ def graph_of(found: Found, options: ReadingOptions) -> Digraph:
     line = "; ".join([f"{_word(directed)}, {len(names)} nodes, {distinct} links", *notes, *asked])
     if notes or not found.is_certain:
         warn_lossy(f"read as: {line}{f'; {found.loss}' if found.loss else ''}")
-    return Digraph.from_ends(
+    graph = Digraph.from_ends(
         list(names.values()),
         np.concatenate([kept, kept[~is_single][:, ::-1]]),
         directed=directed,
         read_as=line,
         node_attributes=_attributes(found, names),
     )
+    graph.link_attributes = {
+        (plain_label(names[link.source]), plain_label(names[link.target])): link.attributes
+        for link in found.links
+        if link.attributes
+    }
+    return graph
 
 
 #: What a link says of its direction, as a number; negative: nothing.

@@ -139,17 +139,18 @@ def _node(record: _Record) -> Node:
 
 
 def _link(edge: _Record, known: set[Hashable], line: int, is_drawn: bool) -> Link:
-    """Return an edge; one that the editor yEd draws without arrow heads runs both ways."""
+    """Return an edge with its numbers and texts; one that the editor yEd draws without arrow heads runs both ways."""
+    said = {name: value for name, value in edge.items() if name not in ("source", "target", "graphics")}
     source, target = _end(edge, "source", known, line), _end(edge, "target", known, line)
     if edge.get("directed") in (0, 1):
-        return Link(source, target, edge["directed"] == 1)
+        return Link(source, target, edge["directed"] == 1, said)
     drawing = edge.get("graphics")
     if not is_drawn or not isinstance(drawing, dict):
-        return Link(source, target)
+        return Link(source, target, attributes=said)
     heads = [str(drawing.get(end, "none")).lower() != "none" for end in ("sourcearrow", "targetarrow")]
     if heads == [True, False]:
-        return Link(target, source)
-    return Link(source, target, None if heads == [False, True] else False)
+        return Link(target, source, attributes=said)
+    return Link(source, target, None if heads == [False, True] else False, said)
 
 
 def _end(edge: _Record, end: str, known: set[Hashable], line: int) -> Hashable:

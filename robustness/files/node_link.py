@@ -52,7 +52,8 @@ def _node_link(document: Mapping[str, Any]) -> Found:
         for end in ends:
             if end not in known:
                 raise UnreadableTopology(f"{key}[{i}]: {end!r} is no node: add it to 'nodes'")
-        links.append(Link(ends[0], ends[1]))
+        said = {name: value for name, value in edge.items() if name not in ("source", "target")}
+        links.append(Link(ends[0], ends[1], attributes=said))
     parallel = "" if multigraph else "{} parallel edges count once"
     return Found(nodes, links, directed, is_certain=directed is not None, parallel=parallel)
 

@@ -54,7 +54,7 @@ def decode_xml(data: bytes, options: ReadingOptions) -> Digraph:
     return graph_of(
         Found(
             [Node(node.id, _seen(node), node.attributes, place_of(node.attributes)) for node in nodes],
-            [Link(edge.source, edge.target, edge.one_way) for edge in found.edges],
+            [Link(edge.source, edge.target, edge.one_way, edge.attributes) for edge in found.edges],
             found.default_directed,
             notes,
             loss=f"{form} reads every label as text",
@@ -118,6 +118,7 @@ class _Edge:
     one_way: bool | None
     default: bool
     is_headless: bool = False
+    attributes: dict[str, Any] = field(default_factory=dict)
 
 
 def _inspect(data: bytes) -> _Inspector:
@@ -164,8 +165,9 @@ class _Inspector:
         self.directed: list[bool] = []
         #: The nodes that are open, the innermost last; an edge is None.
         self.owners: list[_Node | None] = []
-        #: Names of attributes by their ids, of nodes only.
+        #: Names of attributes by their ids, of nodes and of edges.
         self.keys: dict[str, str] = {}
+        self.edge_keys: dict[str, str] = {}
         #: The attribute whose text is read now, and its pieces.
         self.reading: tuple[str, list[str]] | None = None
         self.counts: dict[str, int] = {}
@@ -214,6 +216,7 @@ class _Inspector:
                 edge = _Edge(
                     line, attributes["source"], attributes["target"], self.own(line, attributes), self.inside()
                 )
+                edge.attributes.update({key: attributes[key] for key in ("weight",) if key in attributes})
                 self.edges.append(edge)
                 self.owners.append(None)
             case "link" if self.root == "network":
@@ -277,11 +280,12 @@ class _Inspector:
     def describe(self, name: str, attributes: dict[str, str]) -> None:
         """Take what an element says of attributes, of the node that is open, or of how many there are."""
         owner = self.owners[-1] if self.owners else None
+        is_of_edge = self.open[-2:-1] in (["edge"], ["attvalues"]) and owner is None and bool(self.edges)
         match name:
-            case "key" if attributes.get("for", "node") in ("node", "all"):
-                self.keys[attributes.get("id", "")] = attributes.get("attr.name", attributes.get("id", ""))
+            case "key" if attributes.get("for", "node") in ("node", "edge", "all"):
+                self.name_key(attributes, "attr.name", attributes.get("for", "node"))
             case "attribute":
-                self.keys[attributes.get("id", "")] = attributes.get("title", attributes.get("id", ""))
+                self.name_key(attributes, "title", "all")
             case "nodes" | "edges" if attributes.get("count", "").isdigit() and name not in self.counts:
                 self.counts[name] = int(attributes["count"][:9])
             case "source" | "target" if self.root == "network" and self.open[-2:-1] == ["link"]:
@@ -290,6 +294,8 @@ class _Inspector:
                 self.reading = (name, [])
             case "data" if owner is not None and "key" in attributes:
                 self.reading = (self.keys.get(attributes["key"], attributes["key"]), [])
+            case "data" if is_of_edge and "key" in attributes:
+                self.reading = (self.edge_keys.get(attributes["key"], attributes["key"]), [])
             case "nodelabel" if owner is not None:
                 self.reading = ("nodelabel", [])
             case "geometry" | "position" if owner is not None:
@@ -297,8 +303,17 @@ class _Inspector:
             case "attvalue" if owner is not None and "value" in attributes:
                 key = attributes.get("for", attributes.get("id", ""))
                 owner.attributes.setdefault(self.keys.get(key, key), attributes["value"])
+            case "attvalue" if is_of_edge and "value" in attributes:
+                key = attributes.get("for", attributes.get("id", ""))
+                self.edges[-1].attributes.setdefault(self.edge_keys.get(key, key), attributes["value"])
             case _:
                 self.finish_text()  # the text of an element ends where its first child begins
+
+    def name_key(self, attributes: dict[str, str], title: str, of: str) -> None:
+        """Take the name that a document gives to an attribute's id."""
+        name = attributes.get(title, attributes.get("id", ""))
+        for keys in [*([self.keys] if of != "edge" else []), *([self.edge_keys] if of != "node" else [])]:
+            keys[attributes.get("id", "")] = name
 
     def text(self, data: str) -> None:
         if self.reading is not None:
@@ -318,8 +333,10 @@ class _Inspector:
         owner = self.owners[-1] if self.owners else None
         if owner is not None and text:
             owner.attributes.setdefault(name, text)
-        elif owner is None and self.edges and name in ("source", "target"):
+        elif owner is None and self.edges and self.root == "network":
             setattr(self.edges[-1], name, text)
+        elif owner is None and self.edges and text:
+            self.edges[-1].attributes.setdefault(name, text)
 
     def end(self, tag: str) -> None:
         self.finish_text()

@@ -71,7 +71,7 @@ def actions_for(
     *,
     forbid: Iterable[Link],
     require: Iterable[Link],
-    max_in_degree: int | None,
+    max_in_degree: int | Mapping[Hashable, int] | None,
     one_way: bool,
     budget: Any = None,
 ) -> Actions:
@@ -101,14 +101,25 @@ def actions_for(
     if scale > _FINEST:
         raise InvalidParameter(f"costs are multiples of 1/{_FINEST}: round them")
     items = tuple(Action(pair, int(price * scale), arcs) for (pair, arcs), price in zip(chosen, prices, strict=True))
-    most = None
-    if max_in_degree is not None:
-        if type(max_in_degree) is not int or max_in_degree < 0:
-            raise InvalidParameter(f"max_in_degree is an integer of at least 0, not {max_in_degree!r}")
-        most = tuple(max(0, max_in_degree - degree) for degree in graph.in_degrees.tolist())
+    most = None if max_in_degree is None else _most(graph, max_in_degree)
     uniform = candidates is None and len(set(prices)) <= 1 and not forbidden and not required and most is None
     wanted = frozenset(k for k, item in enumerate(items) if item.ends in required)
     return Actions(items, scale, wanted, most, uniform, one_way, _units(budget, scale))
+
+
+def _most(graph: Digraph, max_in_degree: int | Mapping[Hashable, int]) -> tuple[int, ...]:
+    """Return for every node how many in-neighbours it may gain."""
+    caps: list[int] = [max(graph.n - 1, 0)] * graph.n
+    if isinstance(max_in_degree, Mapping):
+        for label, cap in max_in_degree.items():
+            (i,) = graph.ids([label])
+            caps[i] = cap
+    else:
+        caps = [max_in_degree] * graph.n
+    for cap in caps:
+        if type(cap) is not int or cap < 0:
+            raise InvalidParameter(f"max_in_degree is an integer of at least 0, for all nodes or for each, not {cap!r}")
+    return tuple(max(0, cap - degree) for cap, degree in zip(caps, graph.in_degrees.tolist(), strict=True))
 
 
 def _units(budget: Any, scale: int) -> int | None:

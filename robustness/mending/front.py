@@ -30,7 +30,7 @@ def mend(
     cost: CostLike = None,
     forbid: Iterable[Link] = (),
     require: Iterable[Link] = (),
-    max_in_degree: int | None = None,
+    max_in_degree: int | Mapping[Hashable, int] | None = None,
     one_way: bool | None = None,
     budget: float | None = None,
     any_choice: bool = False,
@@ -56,8 +56,8 @@ def mend(
         What a link costs, at least 0; 1 unless given.
     forbid, require : iterable of pairs of nodes
         Links that may not, and that must, be added.
-    max_in_degree : int, optional
-        How many nodes a node that gains links can hear at most.
+    max_in_degree : int, or mapping from nodes to int, optional
+        How many nodes a node that gains links can hear at most; one that the mapping leaves out, as many as it likes.
     one_way : bool, optional
         Whether an action is one arc; unless given, for directed graphs.
     budget : number, optional

@@ -185,3 +185,63 @@ def test_ctrl_c_keeps_the_best_links(tmp_path: Path) -> None:
         assert "nothing is claimed" in err
     else:
         assert found["verdict"] in ("feasible", "undecided")
+
+
+class TestCostsAndCapsFromFiles:
+    @pytest.fixture
+    def candidates(self, tmp_path: Path) -> Path:
+        file = tmp_path / "candidates.csv"
+        file.write_text("source,target,price\n0,2,3\n0,3,1.5\n1,3,1\n")
+        return file
+
+    @pytest.fixture
+    def path(self, tmp_path: Path) -> Path:
+        write_topology(nx.path_graph(4), tmp_path / "four.json")
+        return tmp_path / "four.json"
+
+    def test_the_column_of_a_file_is_what_links_cost(self, path: Path, candidates: Path) -> None:
+        found = json.loads(run("mend", path, "-r", 2, "--candidates", candidates, "--cost", "price", "--json").stdout)
+        assert (found["verdict"], found["cost"]) == ("optimal", 2.5)
+        assert found["links"] == [[0, 3], [1, 3]]
+
+    def test_links_without_the_attribute_and_attributes_without_a_file(self, path: Path, candidates: Path) -> None:
+        wrong = run("mend", path, "-r", 2, "--candidates", candidates, "--cost", "weight")
+        assert wrong.exit_code == ExitCode.BAD_INPUT
+        assert "links here have: price" in wrong.stderr
+        assert run("mend", path, "-r", 2, "--cost", "price").exit_code == ExitCode.USAGE
+        candidates.write_text("source,target,price\n0,2,3\n0,3,\n1,3,1\n")
+        lacks = run("mend", path, "-r", 2, "--candidates", candidates, "--cost", "price")
+        assert lacks.exit_code == ExitCode.USAGE
+        assert "has no cost" in lacks.stderr
+
+    def test_thin_keeps_what_is_cheap_to_keep(self, tmp_path: Path) -> None:
+        ring = nx.cycle_graph(4)
+        nx.set_edge_attributes(ring, {(0, 1): 9, (1, 2): 1, (2, 3): 1, (0, 3): 1}, "price")
+        file = tmp_path / "ring.graphml"
+        nx.write_graphml_xml(ring, file)
+        found = json.loads(run("thin", file, "-r", 1, "--cost", "price", "--json").stdout)
+        assert (found["cost"], found["dropped"]) == (3, [["0", "1"]])
+        assert run("thin", file, "-r", 1, "--cost", "weight").exit_code == ExitCode.BAD_INPUT
+
+    @pytest.mark.parametrize("text", ["0,1\n3,2\n", '{"0": 1, "3": 2}'])
+    def test_every_node_has_a_cap_of_its_own(self, path: Path, tmp_path: Path, text: str) -> None:
+        caps = tmp_path / "caps"
+        caps.write_text(text)
+        capped = json.loads(run("mend", path, "-r", 1, "-s", 2, "--max-in-degree", caps, "--json").stdout)
+        free = json.loads(run("mend", path, "-r", 1, "-s", 2, "--json").stdout)
+        assert capped["cost"] >= free["cost"]
+        assert run("mend", path, "-r", 2, "--max-in-degree", caps).exit_code == ExitCode.REFUTED
+        assert run("mend", path, "-r", 2, "--max-in-degree", 3).exit_code == ExitCode.DONE
+
+    @pytest.mark.parametrize("text", ["0;1\n", "0,one\n", "[1]", '{"0": null}', "7,1\n"])
+    def test_files_that_say_no_caps(self, path: Path, tmp_path: Path, text: str) -> None:
+        caps = tmp_path / "caps"
+        caps.write_text(text)
+        assert run("mend", path, "-r", 2, "--max-in-degree", caps).exit_code == ExitCode.BAD_INPUT
+        assert run("mend", path, "-r", 2, "--max-in-degree", tmp_path / "none").exit_code == ExitCode.USAGE
+
+    def test_a_budget_and_a_threat_model_without_a_goal(self, path: Path) -> None:
+        bought = run("mend", path, "--budget", 3, "--model", "delayed")
+        assert bought.exit_code == ExitCode.DONE
+        assert bought.stdout.startswith("the budget buys survives f = 1 under delayed, for 3")
+        assert run("mend", path, "--model", "delayed").exit_code == ExitCode.USAGE

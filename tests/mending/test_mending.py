@@ -277,3 +277,27 @@ def test_misuse() -> None:
         bool(rb.mend(nx.path_graph(4), 2))
     with pytest.raises(TypeError):
         rb.mend(nx.path_graph(4), 2, timeout=1)  # type: ignore[call-arg]
+
+
+def test_caps_for_each_node_against_every_set_of_links() -> None:
+    rng = random.Random(8)
+    for _ in range(6):
+        graph = nx.gnp_random_graph(5, 0.4, seed=rng.randrange(1000))
+        caps = {i: rng.randint(1, 4) for i in graph if rng.random() < 0.7}
+
+        def within(digraph: rb.Digraph, graph: nx.Graph = graph, caps: dict[int, int] = caps) -> bool:
+            gained = [i for i in graph if len(digraph.in_neighbours(*digraph.ids([i]))) > graph.degree(i)]
+            return is_robust(2)(digraph) and all(
+                len(digraph.in_neighbours(*digraph.ids([i]))) <= caps.get(i, 4) for i in gained
+            )
+
+        least = least_cost(graph, within, candidates(graph))
+        found = rb.mend(graph, 2, max_in_degree=caps)
+        assert found.verdict is (MendVerdict.IMPOSSIBLE if least is None else MendVerdict.OPTIMAL)
+        assert found.cost == least
+
+
+@pytest.mark.parametrize("caps", [-1, 1.5, True, {0: -1}, {0: "2"}])
+def test_caps_that_cannot_be_meant(caps: object) -> None:
+    with pytest.raises(InvalidParameter, match="max_in_degree is"):
+        rb.mend(nx.path_graph(4), 2, max_in_degree=caps)  # type: ignore[arg-type]
