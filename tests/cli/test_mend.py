@@ -191,7 +191,7 @@ class TestCostsAndCapsFromFiles:
     @pytest.fixture
     def candidates(self, tmp_path: Path) -> Path:
         file = tmp_path / "candidates.csv"
-        file.write_text("source,target,price\n0,2,3\n0,3,1.5\n1,3,1\n")
+        file.write_text("source,target,price\n0,2,3\n0,3,1.5\n1,3,1\n0,4,1.5\n")
         return file
 
     @pytest.fixture
@@ -199,18 +199,23 @@ class TestCostsAndCapsFromFiles:
         write_topology(nx.path_graph(4), tmp_path / "four.json")
         return tmp_path / "four.json"
 
-    def test_the_column_of_a_file_is_what_links_cost(self, path: Path, candidates: Path) -> None:
-        found = json.loads(run("mend", path, "-r", 2, "--candidates", candidates, "--cost", "price", "--json").stdout)
-        assert (found["verdict"], found["cost"]) == ("optimal", 2.5)
-        assert found["links"] == [[0, 3], [1, 3]]
+    @pytest.fixture
+    def five(self, tmp_path: Path) -> Path:
+        write_topology(nx.path_graph(5), tmp_path / "five.json")
+        return tmp_path / "five.json"
 
-    def test_links_without_the_attribute_and_attributes_without_a_file(self, path: Path, candidates: Path) -> None:
-        wrong = run("mend", path, "-r", 2, "--candidates", candidates, "--cost", "weight")
+    def test_the_column_of_a_file_is_what_links_cost(self, five: Path, candidates: Path) -> None:
+        found = json.loads(run("mend", five, "-r", 2, "--candidates", candidates, "--cost", "price", "--json").stdout)
+        assert (found["verdict"], found["cost"]) == ("optimal", 4)
+        assert found["links"] == [[0, 3], [0, 4], [1, 3]]
+
+    def test_links_without_the_attribute_and_attributes_without_a_file(self, five: Path, candidates: Path) -> None:
+        wrong = run("mend", five, "-r", 2, "--candidates", candidates, "--cost", "weight")
         assert wrong.exit_code == ExitCode.BAD_INPUT
         assert "links here have: price" in wrong.stderr
-        assert run("mend", path, "-r", 2, "--cost", "price").exit_code == ExitCode.USAGE
-        candidates.write_text("source,target,price\n0,2,3\n0,3,\n1,3,1\n")
-        lacks = run("mend", path, "-r", 2, "--candidates", candidates, "--cost", "price")
+        assert run("mend", five, "-r", 2, "--cost", "price").exit_code == ExitCode.USAGE
+        candidates.write_text("source,target,price\n0,2,3\n0,3,\n1,3,1\n0,4,2\n")
+        lacks = run("mend", five, "-r", 2, "--candidates", candidates, "--cost", "price")
         assert lacks.exit_code == ExitCode.USAGE
         assert "has no cost" in lacks.stderr
 
