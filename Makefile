@@ -111,7 +111,6 @@ bench-quick: $(READY) ## the benchmark in a minute or two
 	$(BIN)/python -m benchmarks --quick
 
 wheel: $(READY) ## the wheel, into build/dist
-	rm -rf $(BUILD)/lib*
 	$(BIN)/python -m pip wheel --quiet --no-deps --no-build-isolation --wheel-dir $(BUILD)/dist .
 
 lock: ## resolve requirements.lock anew (the only target that does not use it)

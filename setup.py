@@ -7,12 +7,14 @@ without a compiler the same sources run as plain Python, slower.
 from __future__ import annotations
 
 import runpy
+import shutil
 from pathlib import Path
 from typing import Any
 
 from Cython.Build import cythonize
 from setuptools import Extension, find_packages, setup
 from setuptools.command.build_ext import build_ext
+from setuptools.command.build_py import build_py
 
 FOLDER = Path("robustness/kernels")
 #: The digest of all sources; robustness.kernels compares it with the sources that lie beside the machine code.
@@ -43,6 +45,16 @@ class BuildKernels(build_ext):
         super().build_extension(ext)
 
 
+class BuildSources(build_py):
+    """Begin with an empty folder, so that no module that is gone comes back from the build before."""
+
+    def run(self) -> None:
+        """Copy the sources."""
+        if not self.editable_mode:
+            shutil.rmtree(self.build_lib, ignore_errors=True)
+        super().run()
+
+
 KERNELS = [
     Extension(
         f"robustness.kernels.{source.stem}",
@@ -61,5 +73,5 @@ setup(
     packages=[*find_packages(include=["robustness*", "certificates*"]), "robustness.cli"],
     package_dir={"robustness.cli": "cli"},
     ext_modules=cythonize(KERNELS, build_dir="build/cython", compiler_directives=DIRECTIVES, quiet=True),
-    cmdclass={"build_ext": BuildKernels},
+    cmdclass={"build_ext": BuildKernels, "build_py": BuildSources},
 )

@@ -151,6 +151,7 @@ def run_survey(
     networks: ManyNetworks,
     *,
     state: Path | None = None,
+    mending: float = 0.0,
     on_findings: Callable[[Findings], None] | None = None,
     executor: Any = None,
 ) -> tuple[Survey, bool]:
@@ -168,6 +169,7 @@ def run_survey(
             total_time_limit=networks.total_timeout,
             jobs=networks.jobs,
             seed=networks.seed,
+            mending=mending,
             state=state,
             certificates=networks.certificates,
             on_row=line.note,

@@ -30,6 +30,13 @@ _NAMES = tuple(_KINDS.values())
     metavar="FILE",
     help="A journal of finished rows: the same command goes on where it was stopped or killed.",
 )
+@click.option(
+    "--mending",
+    type=click.FloatRange(min=0),
+    default=0.0,
+    metavar="SECONDS",
+    help="For each network of up to 80 nodes, to find the fewest links that give it what is required (or one more r).",
+)
 @cluster_option
 @json_option
 @speaking
@@ -40,6 +47,7 @@ def command(
     kind: str | None,
     output: Path | None,
     state: Path | None,
+    mending: float,
     cluster: str | None,
     as_json: bool,
 ) -> None:
@@ -54,7 +62,7 @@ def command(
 
     require_different_files(networks.paths, [output, state])
     executor = None if cluster is None else joined_cluster(cluster)
-    found, is_interrupted = run_survey(console, networks, state=state, executor=executor)
+    found, is_interrupted = run_survey(console, networks, state=state, mending=mending, executor=executor)
     for note in found.notes:
         console.warn(note)
     kind = kind or ("table" if output is None else _KINDS.get(output.suffix.lower(), "table"))

@@ -240,3 +240,22 @@ def test_misuse() -> None:
         rb.Gate(r=-1)
     assert run("x.json", "-s", 2).exit_code == 2
     assert run("x.json", "--no-models", "--require", 1).exit_code == 2
+
+
+def test_links_that_mend_are_told_where_asked() -> None:
+    networks = {"ring": nx.cycle_graph(6), "complete": nx.complete_graph(6), "ends": nx.path_graph(4)}
+    gate = rb.Gate(r=2)
+    plain = rb.survey(networks, models=[], gate=gate)
+    assert [(row.links, row.links_at_least) for row in plain.rows] == [(None, None)] * 3
+    found = rb.survey(networks, models=[], gate=gate, mending=20.0)
+    assert [(row.links, row.links_at_least) for row in found.rows] == [
+        (len(rb.mend(networks["ring"], 2).links),) * 2,
+        (0, 0),
+        (len(rb.mend(networks["ends"], 2).links),) * 2,
+    ]
+    assert "  links  " in str(found)
+    without = rb.survey({"ring": nx.cycle_graph(6)}, models=[], mending=20.0).rows[0]
+    assert without.links == len(rb.mend(nx.cycle_graph(6), 2).links)
+    for wrong in (-1.0, float("nan"), float("inf")):
+        with pytest.raises(rb.InvalidParameter, match="mending is a number of seconds"):
+            rb.survey(networks, mending=wrong)

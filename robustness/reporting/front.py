@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -15,9 +14,9 @@ from robustness.figures.saving import new_figure
 from robustness.files.writing import replace_file
 from robustness.mending import MendResult
 from robustness.reporting import page
-from robustness.reporting.proposal import proposal_for
 from robustness.reporting.section import section_of
 from robustness.surveying import Gate, Row, Survey, survey
+from robustness.surveying.mended import mended_for, seconds_for_mending
 from robustness.surveying.row import Findings
 
 __all__ = ["Kept", "Report", "report", "report_of", "require_drawing"]
@@ -154,16 +153,14 @@ class Kept:
     """
 
     def __init__(self, gate: Gate, seconds: float) -> None:
-        if not 0 <= seconds < math.inf:
-            raise InvalidParameter(f"mending is a number of seconds of at least 0, not {seconds!r}")
         self.findings: list[Findings] = []
         self.proposals: dict[str, MendResult] = {}
-        self._gate, self._seconds = gate, seconds
+        self._gate, self._seconds = gate, seconds_for_mending(seconds)
 
     def add(self, findings: Findings) -> None:
         """Keep what was found out about one network, and look for links that mend it."""
         if self._seconds:
-            found = proposal_for(findings, self._gate, self._seconds)
+            found = mended_for(findings.graph, findings.row, self._gate, self._seconds)
             if found is not None:
                 self.proposals[findings.row.network] = found
         self.findings.append(findings)

@@ -2,46 +2,10 @@
 
 from __future__ import annotations
 
-from robustness.errors import RobustnessError
-from robustness.mending import Goal, MendResult, MendVerdict, mend
+from robustness.mending import Goal, MendResult, MendVerdict
 from robustness.showing import labels_in_words
-from robustness.surveying import Gate
-from robustness.surveying.row import Findings
 
-__all__ = ["in_sentences", "proposal_for"]
-
-#: Larger networks are not mended on a page: within seconds little would be found.
-_LARGEST = 80
-
-
-def proposal_for(findings: Findings, gate: Gate, seconds: float) -> MendResult | None:
-    """Return the cheapest links that give a network what it lacks; None where nothing is to be proposed.
-
-    Parameters
-    ----------
-    findings : Findings
-    gate : Gate
-        What is asked of it. A network that passes needs nothing; where nothing is asked it is one more r.
-    seconds : float
-        The limit; past it the best links so far are proposed, with the lower bound.
-    """
-    goals = _goals(findings, gate)
-    if not goals or not 1 < findings.graph.n <= _LARGEST:
-        return None
-    try:
-        return mend(findings.graph, goals, time_limit=seconds)
-    except RobustnessError:  # a goal that no network of this size has
-        return None
-
-
-def _goals(findings: Findings, gate: Gate) -> list[Goal]:
-    row = findings.row
-    if gate.r is None and gate.survive is None:
-        return [] if row.r is None else [Goal(row.r + 1)]
-    if row.gate == "passed":
-        return []
-    goals = [] if gate.r is None else [Goal(gate.r, gate.s)]
-    return goals + [Goal(survive=gate.survive, model=model) for model in row.guaranteed if gate.survive is not None]
+__all__ = ["in_sentences"]
 
 
 def in_sentences(found: MendResult) -> list[str]:

@@ -18,6 +18,7 @@ from robustness.errors import InvalidParameter, MissingExtra, RobustnessError
 from robustness.files import ReadingOptions
 from robustness.files.front import read_with
 from robustness.surveying import tables
+from robustness.surveying.mended import seconds_for_mending, with_links
 from robustness.surveying.networks import expand
 from robustness.surveying.row import STANDINGS, Findings, Gate, Question, Row, measure, unreadable
 from robustness.surveying.state import Journal, key_of
@@ -108,6 +109,7 @@ def survey(
     total_time_limit: float | None = None,
     jobs: int = 1,
     seed: int = 0,
+    mending: float = 0.0,
     state: str | os.PathLike[str] | None = None,
     certificates: str | os.PathLike[str] | None = None,
     on_row: Callable[[Row, int, int], None] | None = None,
@@ -132,6 +134,9 @@ def survey(
         Networks at once, one thread each.
     seed : int
         Of the heuristics; it never changes a verdict.
+    mending : float
+        Seconds for each network of up to 80 nodes to find the fewest further links that give it what the gate asks and
+        it lacks (without a gate, one more r): ``links`` and ``links_at_least`` of its row. 0: not asked.
     state : path, optional
         A journal. Rows that it holds are not computed again, so a survey that was killed goes on where it was.
     certificates : path, optional
@@ -167,7 +172,7 @@ def survey(
         raise InvalidParameter(f"jobs is an integer of at least 1, not {jobs!r}")
     require_executor(executor)
     names = tuple(THREAT_MODELS) if models is None else tuple(threat_model_named(name).name for name in models)
-    question = Question(names, gate or Gate(), time_limit, seed)
+    question = Question(names, gate or Gate(), time_limit, seed, seconds_for_mending(mending))
     networks, notes = _named(graphs)
     folder = None if certificates is None else Path(certificates)
     if folder is not None:
@@ -267,6 +272,8 @@ def _row(
     if known is not None and (folder is None or not known.certificate or Path(known.certificate).is_file()):
         return None, known
     found = measure(name, read, question, folder, executor)
+    if isinstance(found, Findings) and question.mending:
+        found = with_links(found, question.gate, question.mending, question.seed)
     row = found.row if isinstance(found, Findings) else found
     if isinstance(found, Findings) and on_findings is not None:
         on_findings(found)

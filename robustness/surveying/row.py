@@ -55,17 +55,21 @@ class Question:
     time_limit : float or None
         Seconds for one network.
     seed : int
+    mending : float
+        Seconds for one network to find the fewest links that mend it; 0: not asked.
     """
 
     models: tuple[str, ...] = tuple(THREAT_MODELS)
     gate: Gate = field(default_factory=Gate)
     time_limit: float | None = None
     seed: int = 0
+    mending: float = 0.0
 
     def as_dict(self) -> dict[str, Any]:
         """Return the question as JSON-ready values: two surveys with equal ones give equal rows, seconds aside."""
         gate = {"r": self.gate.r, "s": self.gate.s, "survive": self.gate.survive}
-        return {"models": list(self.models), "gate": gate, "time_limit": self.time_limit, "seed": self.seed}
+        asked = {"models": list(self.models), "gate": gate, "time_limit": self.time_limit, "seed": self.seed}
+        return asked | ({"mending": self.mending} if self.mending else {})
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +93,9 @@ class Row:
         The smallest f with an attack; None when none is known.
     gate : str
         ``"passed"``, ``"undecided"``, ``"refuted"``, ``"error"``, or ``""`` when nothing was required.
+    links, links_at_least : int or None
+        How many further links give the network what the gate asks and it lacks (without a gate, one more r): so many
+        were found, and so many are needed at least; 0 where nothing is lacking. None when not asked, and not known.
     weakest : dict or None
         The violating pair of (r* + 1)-robustness, ``{"S1": [...], "S2": [...]}``, where one was found.
     sha256 : str
@@ -116,6 +123,8 @@ class Row:
     certificate: str = ""
     seconds: float = field(default=0.0, compare=False)
     error: str = ""
+    links: int | None = None
+    links_at_least: int | None = None
 
     @property
     def is_decided(self) -> bool:
@@ -138,6 +147,8 @@ class Row:
             "guaranteed": dict(self.guaranteed),
             "refuted": dict(self.refuted),
             "gate": self.gate,
+            "links": self.links,
+            "links_at_least": self.links_at_least,
             "weakest": None if self.weakest is None else {name: list(side) for name, side in self.weakest.items()},
             "sha256": self.sha256,
             "certificate": self.certificate,

@@ -22,7 +22,10 @@ def flat(row: Row, models: Sequence[str]) -> dict[str, Any]:
     content = row.as_dict()
     guaranteed, refuted = content.pop("guaranteed"), content.pop("refuted")
     content.pop("weakest")
-    tail = {name: content.pop(name) for name in ("gate", "sha256", "certificate", "seconds", "error")}
+    tail = {
+        name: content.pop(name)
+        for name in ("gate", "links", "links_at_least", "sha256", "certificate", "seconds", "error")
+    }
     for model in models:
         content[f"{model} guaranteed"] = guaranteed.get(model)
         content[f"{model} refuted"] = refuted.get(model)
@@ -33,15 +36,19 @@ def cells(rows: Sequence[Row], models: Sequence[str]) -> list[list[str]]:
     """Return the table that a person reads: a head, then a line for each row.
 
     An interval stands where a limit left one: ``2..4``. Under a model stands the largest f that is guaranteed, and
-    ``0..2`` when f = 3 is the smallest that is refuted and nothing is known in between.
+    ``0..2`` when f = 3 is the smallest that is refuted and nothing is known in between. Under "links" stands how many
+    further links mend the network, where that was asked.
     """
     has_gate = any(row.gate for row in rows)
-    head = ["network", "nodes", "arcs", "r*", "s", *models, *(["gate"] if has_gate else []), "seconds", "note"]
-    return [head, *(_line(row, models, has_gate) for row in rows)]
+    has_links = any(row.links_at_least is not None for row in rows)
+    asked = [name for name, is_there in (("gate", has_gate), ("links", has_links)) if is_there]
+    head = ["network", "nodes", "arcs", "r*", "s", *models, *asked, "seconds", "note"]
+    return [head, *(_line(row, models, has_gate, has_links) for row in rows)]
 
 
-def _line(row: Row, models: Sequence[str], has_gate: bool) -> list[str]:
+def _line(row: Row, models: Sequence[str], has_gate: bool, has_links: bool = False) -> list[str]:
     gate = [row.gate] if has_gate else []
+    gate += [_interval(row.links_at_least, row.links)] if has_links else []
     if row.error:
         return [row.network, *[""] * (4 + len(models)), *gate, "", row.error]
     known = [_interval(row.r, row.r_at_most), _interval(row.s, row.s_at_most)]
