@@ -50,7 +50,7 @@ class _Material:
         self.topologies["round-robin.json"] = (ROOT / "examples" / "round-robin.json").read_bytes()
         folder = ROOT / "tests" / "certificates"
         self.proofs = [
-            (path.with_suffix(".graph").read_bytes(), path.read_bytes()) for path in sorted(folder.glob("*/*.cert"))
+            (path.with_suffix(".graph").read_bytes(), path.read_bytes()) for path in sorted(folder.rglob("*.cert"))
         ]
         self.bytes = [*self.topologies.values(), *(certificate for _, certificate in self.proofs)]
         self.recorded = _recorded_documents()
