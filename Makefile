@@ -67,8 +67,9 @@ coverage-kernel: $(READY) ## every branch of the trusted kernel is taken by its 
 
 # The Coq proofs in their order, the statement of what they rest on, and the checker that Coq makes of them.
 FORMAL := $(BUILD)/formal
-PROOFS := Counting Bytes Robustness Sets Rules Soundness Refutation RefutationSound Tables Evidence Checks Growth Canonical \
-	Reading Certificate Unique Lemmas Traps Examples Proposition1 Assumptions Extract
+PROOFS := Counting Bytes Robustness Apart Sets Rules Soundness Refutation RefutationSound Tables Evidence Checks Growth \
+	Roles RolesSound RolesCount Separation SeparationSound Tolerance Canonical Reading Lemmas Certificate Unique Traps \
+	Examples Proposition1 Assumptions Extract
 
 $(FORMAL)/robustness-verified: $(wildcard certificates/formal/*)
 	@command -v coqc >/dev/null && command -v ocamlopt >/dev/null || \

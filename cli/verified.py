@@ -9,7 +9,7 @@ import tempfile
 from pathlib import Path
 
 import certificates
-from certificates import MalformedCertificate, RejectedCertificate, VerifiedClaim
+from certificates import MalformedCertificate, RejectedCertificate, VerifiedClaim, VerifiedToleranceClaim
 from robustness.errors import InternalError
 
 __all__ = ["NAME", "CheckerUnavailable", "find_checker", "verify_with"]
@@ -18,7 +18,9 @@ NAME = "robustness-verified"
 
 _CLAIM = re.compile(
     r"verified: the graph with (?P<nodes>\d+) nodes, (?P<arcs>\d+) arcs and SHA-256 (?P<sha256>[0-9a-f]{64}) "
-    r"(?P<word>is|is not) \((?P<r>\d+),(?P<s>\d+)\)-robust \(evidence: (?P<evidence>[a-z]+)\); "
+    r"(?:(?P<robust>is|is not) \((?P<r>\d+),(?P<s>\d+)\)-robust"
+    r"|(?P<has>has a|has no) (?P<sets>trap|violation) for f = (?P<f>\d+) (?P<where>in total|locally)) "
+    r"\(evidence: (?P<evidence>[a-z]+)\); "
 )
 
 
@@ -34,7 +36,7 @@ def find_checker() -> Path | None:
     return built if built.is_file() else None
 
 
-def verify_with(checker: Path, graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedClaim:
+def verify_with(checker: Path, graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedClaim | VerifiedToleranceClaim:
     """Return the claim that ``checker`` answers with for these bytes.
 
     Raises
@@ -66,12 +68,15 @@ def verify_with(checker: Path, graph_bytes: bytes, certificate_bytes: bytes) -> 
         raise InternalError(
             f"{checker} ended with exit code {run.returncode} and no answer: {run.stderr.strip()[:200]}"
         )
-    return VerifiedClaim(
-        "robust" if found["word"] == "is" else "not-robust",
-        int(found["r"]),
-        int(found["s"]),
-        found["evidence"],
-        found["sha256"],
-        int(found["nodes"]),
-        int(found["arcs"]),
+    about = found["evidence"], found["sha256"], int(found["nodes"]), int(found["arcs"])
+    if found["robust"]:
+        return VerifiedClaim(
+            "robust" if found["robust"] == "is" else "not-robust", int(found["r"]), int(found["s"]), *about
+        )
+    return VerifiedToleranceClaim(
+        "apart" if found["has"] == "has a" else "together",
+        int(found["f"]),
+        2 if found["sets"] == "trap" else 1,
+        "total" if found["where"] == "in total" else "local",
+        *about,
     )

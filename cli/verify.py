@@ -40,7 +40,8 @@ SCHEMA = "robustness/verify/1"
     type=click.Choice(["python", "verified"]),
     default="python",
     show_default=True,
-    help="verified: the checker that is proved correct, which 'make formal' builds; for certificates of robustness.",
+    help="verified: the checker that is proved correct, which 'make formal' builds; for certificates of robustness and "
+    "of what malicious nodes can do.",
 )
 @click.option(
     "--timeout", type=float, metavar="SECONDS", help="Of a mending certificate: for the solver that confirms the bound."

@@ -1,5 +1,5 @@
 (* What the theorems rest on: nothing but Coq. *)
-From Formal Require Import Certificate Unique Lemmas Traps Examples Proposition1.
+From Formal Require Import Certificate Unique Lemmas Tolerance Traps Examples Proposition1.
 Print Assumptions verify_sound.
 Print Assumptions describes_one.
 Print Assumptions lemma_1_i.
@@ -12,6 +12,7 @@ Print Assumptions lemma_1_vi.
 Print Assumptions lemma_1_vii.
 Print Assumptions union_unreached.
 Print Assumptions need_form.
+Print Assumptions robust_together.
 Print Assumptions no_trap_iff_robust_without.
 Print Assumptions K5_without_an_edge_is_3_robust.
 Print Assumptions a_1_robust_digraph_with_a_node_that_hears_nobody.

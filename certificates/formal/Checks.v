@@ -157,20 +157,29 @@ Proof.
   destruct (v =? id y); [injection Z as <-|]; auto.
 Qed.
 
-Lemma refutation_sound : forall hearers r s body, 1 <= r -> 1 <= s ->
-  refutes (question_of hearers r s) body = Refuted -> no_pair (seq 0 n) h r s.
+Lemma question_fine : forall hearers r s, let q := question_of hearers r s in
+  let needs := fun i => cnt (seq 0 n) (h i) + 1 - r in
+  Forall (Forall (row_ok n h needs)) (groups q) /\ Forall (Forall (fun x => id x < n)) (groups q) /\
+  (forall v x, row_of q v = Some x -> row_ok n h needs x) /\ (forall v, mem (full q) v = (v <? n)).
 Proof.
-  intros hearers r s body R S1 RE. apply lemma_1; [assumption|assumption|assumption|].
-  assert (F : Forall (row_ok n h (fun i => cnt (seq 0 n) (h i) + 1 - r)) (map (row_for words hearers r) (seq 0 n))).
+  intros hearers r s q needs.
+  assert (F : Forall (row_ok n h needs) (map (row_for words hearers r) (seq 0 n))).
   { apply Forall_forall. intros x X. apply in_map_iff in X. destruct X as (i & <- & I). apply row_for_ok. apply in_seq in I. lia. }
-  apply (refutes_sound n h _ (question_of hearers r s) h_range h_loop) with (body := body); simpl.
-  - apply cut_ok. assumption.
-  - intros v x G. apply (table_in _ _ _ v x F) in G; [assumption|]. intros y Y. unfold get in Y. rewrite find_leaf in Y. discriminate.
-  - intros v. pose proof words_enough. destruct (le_lt_dec (Sets.size * words) v) as [L|L].
+  split; [apply cut_ok; assumption|]. split; [|split].
+  - apply cut_ok. apply Forall_forall. intros x X. apply in_map_iff in X. destruct X as (i & <- & I). apply in_seq in I. simpl. lia.
+  - intros v x G. simpl in G. apply (table_in _ _ _ v x F) in G; [assumption|]. intros y Y. unfold get in Y. rewrite find_leaf in Y. discriminate.
+  - intros v. simpl. pose proof words_enough. destruct (le_lt_dec (Sets.size * words) v) as [L|L].
     + rewrite mem_beyond by (rewrite length_of_list; assumption). destruct (Nat.ltb_spec v n); [lia|reflexivity].
     + rewrite mem_of_list by assumption. apply eq_true_iff_eq. rewrite existsb_exists, Nat.ltb_lt. split.
       * intros (u & U & E). apply Nat.eqb_eq in E. apply in_seq in U. lia.
       * intros U. exists v. split; [apply in_seq; lia|apply Nat.eqb_refl].
-  - assumption.
+Qed.
+
+Lemma refutation_sound : forall hearers r s body, 1 <= r -> 1 <= s ->
+  refutes (question_of hearers r s) body = Refuted -> no_pair (seq 0 n) h r s.
+Proof.
+  intros hearers r s body R S1 RE. apply lemma_1; [assumption|assumption|assumption|].
+  destruct (question_fine hearers r s) as (Q1 & _ & Q3 & Q4).
+  exact (refutes_sound n h _ (question_of hearers r s) h_range h_loop Q1 Q3 Q4 body RE).
 Qed.
 End Graph.

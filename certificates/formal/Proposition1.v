@@ -1,7 +1,7 @@
 (* Proposition 1, corrected, for every f: a 2f-robust network whose in-degrees are 3f or more, that is also
    (f+1,s)-robust for every s, and that has a trap for f (docs/constructions.md, two_f_robust_counterexample). *)
 From Coq Require Import List Bool Arith Lia.
-From Formal Require Import Counting Sets Robustness Evidence Traps.
+From Formal Require Import Counting Sets Robustness Evidence Apart Traps.
 Import ListNotations.
 
 Lemma cnt_three : forall l f g1 g2 g3, (forall v, In v l -> Nat.b2n (f v) = Nat.b2n (g1 v) + Nat.b2n (g2 v) + Nat.b2n (g3 v)) ->
@@ -377,10 +377,17 @@ Proof.
         destruct (heard_by_member _ _ _ _ _ _ _ _ i T ltac:(lia) (seq_NoDup _ _) I Pi) as [_ O].
         unfold outside in O. unfold size. fold n. lia.
   - intros i I. apply corrected_degree; assumption.
-  - split; try assumption.
-    + unfold size. rewrite (cnt_ext _ (M f) (interval 0 f)) by (intros; reflexivity). rewrite cnt_interval_all; [lia|simpl; lia].
-    + intros i _ A B. unfold M in A. apply Nat.ltb_lt in A. apply interval_true in B. lia.
-    + intros i _ A B. unfold M in A. apply Nat.ltb_lt in A. apply interval_true in B. lia.
-    + intros i I Pi. apply (corrected_deaf f i F I (S1 f)); auto.
-    + intros i I Pi. apply (corrected_deaf f i F I (S2 f)); auto.
+  - assert (OFF : forall low, f <= low -> forall i, M f i = true -> interval low (f + 1) i = true -> False).
+    { intros low L i A B. unfold M in A. apply Nat.ltb_lt in A. apply interval_true in B. lia. }
+    assert (NM : forall S, nonempty (corrected f) S -> (forall i, M f i = true -> S i = true -> False) ->
+      exists i, i < nodes (corrected f) /\ S i = true /\ M f i = false).
+    { intros S (i & I & Si) D. exists i. split; [assumption|]. split; [assumption|]. apply not_true_is_false. intros Mi. exact (D i Mi Si). }
+    split.
+    + unfold obeys, size. rewrite (cnt_ext _ (M f) (interval 0 f)) by (intros; reflexivity). rewrite cnt_interval_all; [lia|simpl; lia].
+    + apply NM; [assumption|apply OFF; lia].
+    + apply NM; [assumption|apply OFF; lia].
+    + assumption.
+    + split; intros i _; apply OFF; lia.
+    + intros i I Pi _. apply (corrected_deaf f i F I (S1 f)); auto.
+    + intros i I Pi _. apply (corrected_deaf f i F I (S2 f)); auto.
 Qed.

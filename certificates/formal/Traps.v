@@ -1,18 +1,11 @@
-(* Traps: no trap for f if and only if the network is (f+1)-robust without any f nodes (docs/theorems.md, Terms). *)
+(* Traps: none for f if and only if the network is (f+1)-robust without any f nodes, or, with the local bound, without any
+   nodes that obey it (docs/theorems.md, Terms). *)
 From Coq Require Import List Bool Arith Lia.
-From Formal Require Import Counting Robustness Evidence.
+From Formal Require Import Counting Robustness Evidence Apart.
 Import ListNotations.
 
-(* Disjoint M, S1, S2, neither S empty, M of at most f nodes, and nobody in an S hears more than f nodes outside S and M. *)
-Record trap (G : digraph) (f : nat) (M S1 S2 : set) : Prop := {
-  few : size G M <= f;
-  some_1 : nonempty G S1;
-  some_2 : nonempty G S2;
-  apart_12 : disjoint G S1 S2;
-  apart_M1 : disjoint G M S1;
-  apart_M2 : disjoint G M S2;
-  deaf_1 : forall i, i < nodes G -> S1 i = true -> size G (fun j => hears G i j && negb (S1 j || M j)) <= f;
-  deaf_2 : forall i, i < nodes G -> S2 i = true -> size G (fun j => hears G i j && negb (S2 j || M j)) <= f }.
+(* A trap: sets of two faces, in total, that hold apart. *)
+Definition trap (G : digraph) (f : nat) (M S1 S2 : set) : Prop := apart G f true false M S1 S2.
 
 (* The nodes that are left without M; (f+1)-robustness of what is left. *)
 Definition left_without (G : digraph) (M : set) : list nat := filter (fun v => negb (M v)) (seq 0 (nodes G)).
@@ -22,11 +15,10 @@ Proof.
   intros l p f. induction l as [|v l IH]; [reflexivity|]. simpl. destruct (p v) eqn:E; rewrite ?cnt_cons, IH, ?E; reflexivity.
 Qed.
 
-Theorem no_trap_iff_robust_without : forall G f,
-  (forall M S1 S2, trap G f M S1 S2 -> False) <->
-  (forall M, size G M <= f -> no_pair (left_without G M) (hears G) (f + 1) 1).
+Theorem no_trap_iff_robust_without : forall G f local,
+  together G f true local <-> (forall M, obeys G f local M -> no_pair (left_without G M) (hears G) (f + 1) 1).
 Proof.
-  intros G f. set (V := seq 0 (nodes G)).
+  intros G f local. set (V := seq 0 (nodes G)).
   assert (O : forall M S i, outside (left_without G M) (hears G) S i = size G (fun j => hears G i j && negb (S j || M j))).
   { intros M S i. unfold outside, left_without, size. rewrite cnt_filter. apply cnt_ext. intros v _.
     destruct (hears G i v), (S v), (M v); reflexivity. }
@@ -46,19 +38,22 @@ Proof.
       - assert (1 <= cnt (left_without G M) (reach (left_without G M) (hears G) (f + 1) S)); [|lia].
         apply cnt_pos with k; [apply IN; auto|]. unfold reach. rewrite Q1. apply Nat.leb_le. lia. }
     apply IN in I, J.
+    assert (OFF : forall S k, k < nodes G -> M k = true -> S k && negb (M k) = true -> False)
+      by (intros S k _ A B; rewrite A, andb_false_r in B; discriminate).
     apply (NT M (fun v => S1 v && negb (M v)) (fun v => S2 v && negb (M v))). split.
     + assumption.
     + exists i. destruct I as [I I']. rewrite Si, I'. auto.
     + exists j. destruct J as [J J']. rewrite Sj, J'. auto.
     + intros k K A B. apply andb_true_iff in A, B. destruct A as [A A'], B as [B _]. apply negb_true_iff in A'.
       apply (D k); [apply IN|assumption|assumption]. auto.
-    + intros k K A B. rewrite A, andb_false_r in B. discriminate.
-    + intros k K A B. rewrite A, andb_false_r in B. discriminate.
-    + apply DEAF. lia.
-    + apply DEAF. lia.
-  - intros NP M S1 S2 [FEW (i & I & Si) (j & J & Sj) D D1 D2 F1 F2].
-    assert (Mi : M i = false) by (destruct (M i) eqn:E; [exfalso; eauto|reflexivity]).
-    assert (Mj : M j = false) by (destruct (M j) eqn:E; [exfalso; eauto|reflexivity]).
+    + split; intros k K; apply OFF; assumption.
+    + intros k K A _. apply DEAF; [lia|assumption|assumption].
+    + intros k K A _. apply DEAF; [lia|assumption|assumption].
+  - intros NP M S1 S2 [FEW (i & I & Si & Mi) (j & J & Sj & Mj) D [D1 D2] G1 G2].
+    assert (F1 : forall k, k < nodes G -> S1 k = true -> size G (fun j => hears G k j && negb (S1 j || M j)) <= f).
+    { intros k K Sk. apply G1; [assumption|assumption|]. destruct (M k) eqn:Mk; [exfalso; exact (D1 k K Mk Sk)|reflexivity]. }
+    assert (F2 : forall k, k < nodes G -> S2 k = true -> size G (fun j => hears G k j && negb (S2 j || M j)) <= f).
+    { intros k K Sk. apply G2; [assumption|assumption|]. destruct (M k) eqn:Mk; [exfalso; exact (D2 k K Mk Sk)|reflexivity]. }
     assert (Z : forall S, (forall k, k < nodes G -> S k = true -> size G (fun j => hears G k j && negb (S j || M j)) <= f) ->
       cnt (left_without G M) (reach (left_without G M) (hears G) (f + 1) S) = 0).
     { intros S H. apply cnt_false. intros k K. apply IN in K. destruct K as [K _]. unfold reach. destruct (S k) eqn:Sk; [|reflexivity].

@@ -4,7 +4,8 @@
 let fail code message = prerr_endline message; exit code
 
 let usage problem =
-  fail 2 ("usage: robustness-verified verify [--expect {robust,not-robust}] [-r R] [-s S] graph certificate\n"
+  fail 2 ("usage: robustness-verified verify [--expect {robust,not-robust,apart,together}] [-r R] [-s S] [--window WINDOW]\n"
+          ^ "       [-f F] [--faces {1,2}] [--bound {total,local}] graph certificate\n"
           ^ "robustness-verified verify: error: " ^ problem)
 
 (* The file's bytes, or somewhat more than [limit] of them. *)
@@ -79,27 +80,58 @@ let () =
   if Sys.int_size <> 63 then fail 1 "internal error: the checker needs a machine of 64 bits";
   try_words 100 max_int
 
-(* Does the claim answer the question: is it what was asked, or does it imply that (Lemma 1 (i) and (ii))? *)
-let comparison (c : Checker.claim) verdict r s =
-  let own = if c.is_robust then "robust" else "not-robust" in
-  let wrong =
-    (match verdict with Some v when v <> own -> [ "verdict " ^ v ] | _ -> [])
-    @ (match r with Some r when r <> c.of_r -> [ "r " ^ string_of_int r ] | _ -> [])
-    @ (match s with Some s when s <> c.of_s -> [ "s " ^ string_of_int s ] | _ -> []) in
-  let list = String.concat ", " wrong in
-  if verdict = None && r = None && s = None then
-    (true, "compared with no question: state one to have the claim compared with it")
+(* What is asked, None asks nothing; and what a claim says, by the same names. *)
+type question = {
+  verdict : string option; r : int option; s : int option; window : int option;
+  f : int option; faces : int option; bound : string option }
+
+let asked q =
+  let number name = function Some k -> [ (name, string_of_int k) ] | None -> [] in
+  let word name = function Some k -> [ (name, k) ] | None -> [] in
+  word "verdict" q.verdict @ number "r" q.r @ number "s" q.s @ number "window" q.window
+  @ number "f" q.f @ number "faces" q.faces @ word "bound" q.bound
+
+let parts (c : Checker.claim) =
+  match c.says with
+  | Checker.Robustness (yes, r, s) ->
+    [ ("verdict", if yes then "robust" else "not-robust"); ("r", string_of_int r); ("s", string_of_int s) ]
+  | Checker.Holding_apart (yes, f, two_faces, local) ->
+    [ ("verdict", if yes then "apart" else "together"); ("f", string_of_int f);
+      ("faces", if two_faces then "2" else "1"); ("bound", if local then "local" else "total") ]
+
+(* Does the claim imply what is asked: by Lemma 1 (i) and (ii); against fewer nodes, or by more? *)
+let implies (c : Checker.claim) q =
+  let same name value = List.assoc_opt name (parts c) = value in
+  same "verdict" q.verdict
+  &&
+  match c.says with
+  | Checker.Holding_apart (yes, f, _, _) ->
+    same "faces" (Option.map string_of_int q.faces) && same "bound" q.bound
+    && (match q.f with None -> true | Some k -> if yes then k >= f else k <= f)
+  | Checker.Robustness (yes, of_r, of_s) -> (
+    match q.r with
+    | None -> false
+    | Some r ->
+      let s = Option.value q.s ~default:1 in
+      r >= 0 && s >= 1 && if yes then r <= of_r && s <= of_s + of_r - r else of_r <= r && of_s <= s + r - of_r)
+
+(* Does the claim answer the question, and how? *)
+let comparison c q =
+  let asked = asked q and parts = parts c in
+  let names list = String.concat ", " list in
+  let foreign = List.filter (fun (name, _) -> not (List.mem_assoc name parts)) asked in
+  let wrong = List.filter (fun (name, value) -> List.assoc_opt name parts <> Some value) asked in
+  let list = names (List.map (fun (name, value) -> name ^ " " ^ value) wrong) in
+  if asked = [] then (true, "compared with no question: state one to have the claim compared with it")
+  else if foreign <> [] then (false, "the certificate says nothing about " ^ names (List.map fst foreign))
   else if wrong = [] then (true, "the claim is the one asked for")
-  else
-    let implied =
-      match (verdict, r) with
-      | Some v, Some r when v = own ->
-        let s = Option.value s ~default:1 in
-        r >= 0 && s >= 1
-        && if c.is_robust then r <= c.of_r && s <= c.of_s + c.of_r - r else c.of_r <= r && c.of_s <= s + r - c.of_r
-      | _ -> false in
-    if implied then (true, "the claim implies the one asked for (" ^ list ^ ")")
-    else (false, "the claim proved is not the one asked for (" ^ list ^ ")")
+  else if implies c q then (true, "the claim implies the one asked for (" ^ list ^ ")")
+  else (false, "the claim proved is not the one asked for (" ^ list ^ ")")
+
+(* A question about malicious nodes names all four of its parts. *)
+let has_gap q =
+  let about = q.f <> None || q.faces <> None || q.bound <> None || q.verdict = Some "apart" || q.verdict = Some "together" in
+  about && (q.verdict = None || q.f = None || q.faces = None || q.bound = None)
 
 let answer graph certificate =
   let digest = sha256 graph in
@@ -115,12 +147,12 @@ let rec stream () =
         let graph = really_input_string stdin n in
         let certificate = really_input_string stdin m in
         (match snd (answer graph certificate) with
-         | Checker.Verified c -> Printf.printf "0 %b %d %d\n%!" c.is_robust c.of_r c.of_s
+         | Checker.Verified c -> Printf.printf "0 %s\n%!" (String.concat " " (List.map snd (parts c)))
          | Checker.Malformed _ -> print_string "3\n"; flush stdout
          | Checker.Rejected _ -> print_string "10\n"; flush stdout));
     stream ()
 
-let run graph certificate verdict r s =
+let run graph certificate question =
   let graph = read_at_most (1 lsl 28) graph in
   let certificate = read_at_most (1 lsl 30) certificate in
   let digest, outcome = answer graph certificate in
@@ -128,28 +160,40 @@ let run graph certificate verdict r s =
   | Checker.Malformed why -> fail 3 ("malformed: " ^ why)
   | Checker.Rejected (why, place) -> fail 10 ("rejected: " ^ why ^ if place = 0 then "" else Printf.sprintf " %d" place)
   | Checker.Verified c ->
+    let said =
+      match c.says with
+      | Checker.Robustness (yes, r, s) -> Printf.sprintf "%s (%d,%d)-robust" (if yes then "is" else "is not") r s
+      | Checker.Holding_apart (yes, f, two_faces, local) ->
+        Printf.sprintf "%s %s for f = %d %s" (if yes then "has a" else "has no") (if two_faces then "trap" else "violation") f
+          (if local then "locally" else "in total") in
     let claim =
-      Printf.sprintf "the graph with %d nodes, %d arcs and SHA-256 %s %s (%d,%d)-robust (evidence: %s)" c.of_nodes c.of_arcs
-        digest (if c.is_robust then "is" else "is not") c.of_r c.of_s c.evidence in
-    let answers, how = comparison c verdict r s in
+      Printf.sprintf "the graph with %d nodes, %d arcs and SHA-256 %s %s (evidence: %s)" c.of_nodes c.of_arcs digest said
+        c.evidence in
+    let answers, how = comparison c question in
     if answers then print_endline ("verified: " ^ claim ^ "; " ^ how)
     else fail 10 ("rejected: " ^ how ^ "; proved is that " ^ claim)
 
 let () =
   let number text = match int_of_string_opt text with Some k -> Some k | None -> usage ("invalid int value: '" ^ text ^ "'") in
-  let rec options files verdict r s = function
-    | "--expect" :: (("robust" | "not-robust") as v) :: rest -> options files (Some v) r s rest
-    | "-r" :: k :: rest -> options files verdict (number k) s rest
-    | "-s" :: k :: rest -> options files verdict r (number k) rest
+  let rec options files q = function
+    | "--expect" :: (("robust" | "not-robust" | "apart" | "together") as v) :: rest -> options files { q with verdict = Some v } rest
+    | "-r" :: k :: rest -> options files { q with r = number k } rest
+    | "-s" :: k :: rest -> options files { q with s = number k } rest
+    | "--window" :: k :: rest -> options files { q with window = number k } rest
+    | "-f" :: k :: rest -> options files { q with f = number k } rest
+    | "--faces" :: (("1" | "2") as k) :: rest -> options files { q with faces = number k } rest
+    | "--bound" :: (("total" | "local") as v) :: rest -> options files { q with bound = Some v } rest
     | option :: _ when String.length option > 1 && option.[0] = '-' -> usage ("unrecognized or incomplete: " ^ option)
-    | file :: rest -> options (file :: files) verdict r s rest
+    | file :: rest -> options (file :: files) q rest
     | [] -> (
+      if has_gap q then usage "a question about malicious nodes names --expect, -f, --faces and --bound";
       match files with
       | [ certificate; graph ] -> (
-        try run graph certificate verdict r s with
+        try run graph certificate q with
         | Stack_overflow | Out_of_memory -> fail 1 "internal error: out of memory")
       | _ -> usage "a graph and a certificate are needed") in
+  let nothing = { verdict = None; r = None; s = None; window = None; f = None; faces = None; bound = None } in
   match Array.to_list Sys.argv with
-  | _ :: "verify" :: rest -> options [] None None None rest
+  | _ :: "verify" :: rest -> options [] nothing rest
   | [ _; "stream" ] -> set_binary_mode_in stdin true; stream ()
   | _ -> usage "the command is verify"

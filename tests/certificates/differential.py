@@ -19,17 +19,24 @@ from typing import Any
 
 import networkx as nx
 
-from certificates import MalformedCertificate, RejectedCertificate, verify
+from certificates import MalformedCertificate, RejectedCertificate, VerifiedClaim, VerifiedToleranceClaim
 from certificates.graph import digest
+from certificates.questions import verify_any
+from certificates.tolerance import FORMAT as FIRST_TOLERANCE_FORMAT
+from certificates.tolerance import FORMAT_WITH_REFUTATIONS
 from cli.verified import find_checker
 from robustness import Digraph
 from robustness.decision.algorithms import subset_search
 from robustness.limits import Limits
+from robustness.traps import searching
+from robustness.traps.question import Question
 from tests.certificates.forging import certificate, read, spell, wander
+from tests.certificates.test_separation import wander as wander_apart
 
 __all__ = ["Stream", "by_the_kernel", "cases", "differs"]
 
-#: The answers: ``(0, verdict, r, s)``, or the exit code 3 or 10 alone.
+#: The answers: 0 and the parts of the claim, ``(0, verdict, r, s)`` or ``(0, verdict, f, faces, bound)``, as text; or
+#: the exit code 3 or 10 alone.
 Answer = tuple[Any, ...]
 Case = tuple[str, bytes, bytes]
 
@@ -52,24 +59,22 @@ class Stream:
         assert self.process.stdout is not None
         self.process.stdin.write(b"%d %d\n" % (len(graph), len(data)) + graph + data)
         self.process.stdin.flush()
-        match self.process.stdout.readline().split():
-            case [b"0", robust, r, s]:
-                return 0, "robust" if robust == b"true" else "not-robust", int(r), int(s)
-            case [code]:
-                return (int(code),)
-            case line:
-                raise AssertionError(f"the verified checker answered {line}")
+        code, *parts = self.process.stdout.readline().decode().split()
+        return int(code), *parts
 
 
 def by_the_kernel(graph: bytes, data: bytes) -> Answer:
     """Return what the Python kernel answers."""
     try:
-        claim = verify(graph, data)
+        claim = verify_any(graph, data)
     except MalformedCertificate:
         return (3,)
     except RejectedCertificate:
         return (10,)
-    return 0, claim.verdict, claim.r, claim.s
+    if isinstance(claim, VerifiedToleranceClaim):
+        return 0, claim.verdict, str(claim.f), str(claim.faces), claim.bound
+    assert isinstance(claim, VerifiedClaim)
+    return 0, claim.verdict, str(claim.r), str(claim.s)
 
 
 def differs(stream: Stream, case: Case) -> str | None:
@@ -82,16 +87,17 @@ def differs(stream: Stream, case: Case) -> str | None:
 
 
 def cases(seed: int) -> Iterator[Case]:
-    """Yield certificates without end, honest ones and mutants of them, of every kind but derivations."""
+    """Yield certificates without end, honest ones and mutants of them, of every kind that both checkers know."""
     rng = random.Random(seed)
     while True:
         graph = _graph(rng)
         n = graph.n
         r, s = rng.randint(1, (n + 1) // 2), rng.choice((1, 1, rng.randint(1, n)))
-        for name, honest, body in _honest(graph, r, s, rng):
-            yield name, graph.canonical_bytes(), honest
+        honest = [*_honest(graph, r, s, rng), *_honest_apart(graph, rng)]
+        for name, data, body in honest:
+            yield name, graph.canonical_bytes(), data
             for _ in range(8):
-                yield f"{name}, mutated", *_mutant(graph, honest, body, r, s, rng)
+                yield f"{name}, mutated", *_mutant(graph, data, body, r, s, rng)
 
 
 def _graph(rng: random.Random) -> Digraph:
@@ -131,6 +137,44 @@ def _honest(graph: Digraph, r: int, s: int, rng: random.Random) -> Iterator[tupl
         yield "growth", certificate(graph, r, s, evidence=grown, body=body), body
 
 
+def _honest_apart(graph: Digraph, rng: random.Random) -> Iterator[tuple[str, bytes, bytes]]:
+    """Yield certificates of what f malicious nodes can do, that may well be right: name, bytes, and the body."""
+    n = graph.n
+    question = Question(rng.choice((0, 1, 1, 2, 3)), rng.random() < 0.5, rng.random() < 0.5)
+    if n < 63:
+        answer = searching.decide(graph, question, Limits(), transcript=True)
+        if answer.transcript is not None:
+            yield "apart: searched", _apart(graph, question, body=answer.transcript), answer.transcript
+        if answer.sets is not None:
+            sets = {name: sorted(ids) for name, ids in zip(("M", "S1", "S2"), answer.sets, strict=True)}
+            yield "apart: sets found", _apart(graph, question, sets), b""
+        body = wander_apart(graph, question, rng, 30)
+        yield "apart: wandered", _apart(graph, question, body=body), body
+    of = [rng.choice("MSTX") for _ in range(n)]
+    drawn = {name: [i for i in range(n) if of[i] == letter] for name, letter in (("M", "M"), ("S1", "S"), ("S2", "T"))}
+    if not question.two_faces:
+        for i in drawn["M"]:
+            drawn[rng.choice(("S1", "S2"))].append(i)
+    drawn = {name: sorted(ids) for name, ids in drawn.items()}
+    yield "apart: sets drawn", _apart(graph, question._replace(f=rng.randint(0, n)), drawn), b""
+    r = 2 * question.f + 1
+    if r <= (n + 1) // 2 and n < 63:
+        found = subset_search.decide(graph, r, 1, Limits(), transcript=True).transcript or b""
+        inner = certificate(graph, rng.choice((r, r, r, r + 1)), rng.choice((1, 1, 1, 2)), body=found)
+        yield "apart: robust", _apart(graph, question, {"kind": "robust"}, inner), inner
+
+
+def _apart(graph: Digraph, question: Question, evidence: dict[str, Any] | None = None, body: bytes = b"") -> bytes:
+    """Return a tolerance certificate, of sets, of another certificate, or by default of a refutation."""
+    f, two_faces, local = question
+    verdict = "together" if evidence is None or "kind" in evidence else "apart"
+    evidence = {"kind": "refutation" if evidence is None else "sets"} | (evidence or {})
+    claim = {"f": f, "faces": 2 if two_faces else 1, "bound": "local" if local else "total", "verdict": verdict}
+    form = FIRST_TOLERANCE_FORMAT if evidence["kind"] != "refutation" and f % 2 else FORMAT_WITH_REFUTATIONS
+    header = {"format": form, "graph": graph.sha256, "claim": claim, "evidence": evidence}
+    return json.dumps(header).encode() + b"\n" + body
+
+
 def _arcs(graph: Digraph) -> list[tuple[int, int]]:
     arcs: list[list[int]] = json.loads(graph.canonical_bytes())["arcs"]
     return [(u, v) for u, v in arcs]
@@ -153,8 +197,11 @@ def _mutant(graph: Digraph, honest: bytes, body: bytes, r: int, s: int, rng: ran
             return canonical, head + body[: rng.randrange(len(body))]
         case 3:
             document = json.loads(head)
-            document["claim"][rng.choice("rs")] = rng.choice(
-                (r, s, r + 1, s + 1, 1, 0, -1, 2**62, 2**70, 1.0, True, "1")
+            part = rng.choice([name for name in document["claim"] if name not in ("property", "verdict")])
+            document["claim"][part] = rng.choice(
+                ("total", "local", 2)
+                if part in ("bound", "faces") and rng.random() < 0.8
+                else (r, s, r + 1, s + 1, 1, 0, -1, 2**62, 2**70, 1.0, True, "1")
             )
             return canonical, json.dumps(document).encode() + b"\n" + body
         case 4:
@@ -168,7 +215,9 @@ def _mutant(graph: Digraph, honest: bytes, body: bytes, r: int, s: int, rng: ran
             return other, honest.replace(graph.sha256.encode(), digest(other).encode()) if bound else honest
         case _:
             spaced = json.dumps(json.loads(head), indent=None, separators=(" ,\t", " : "), ensure_ascii=False)
-            escaped = spaced.replace("kind", "k\\u0069nd").replace("rs-robust", "rs\\u002Drobust")
+            escaped = (
+                spaced.replace("kind", "k\\u0069nd").replace("rs-robust", "rs\\u002Drobust").replace("S1", "\\u00531")
+            )
             return canonical, rng.choice((spaced, escaped)).encode() + b"\r\n" + body
 
 

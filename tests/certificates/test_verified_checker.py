@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import json
 import re
 import subprocess
-from itertools import islice
+from collections import Counter
+from itertools import islice, product
 from pathlib import Path
 
 import networkx as nx
 import pytest
 from click.testing import CliRunner
 
+from certificates import verify_tolerance
+from certificates.tolerance import FORMAT_WITH_REFUTATIONS
 from cli.main import robustness
-from cli.verified import find_checker
+from cli.verified import find_checker, verify_with
 from robustness import Digraph
+from robustness.limits import Limits
+from robustness.traps import searching
+from robustness.traps.question import Question
 from tests.certificates.differential import Stream, by_the_kernel, cases, differs
 from tests.certificates.forging import certificate, searched
 from tests.certificates.make_samples import HERE
@@ -51,12 +58,26 @@ def test_every_committed_sample(checker: Path) -> None:
 @pytest.mark.parametrize("seed", [1, 2])
 def test_generated_certificates_and_mutants(seed: int, checker: Path) -> None:
     """``python -m tests.certificates.differential --count 100000`` compares as many as you like."""
-    accepted = 0
+    accepted = compare(seed, 1000, checker)
+    assert accepted["robustness"] > 50
+    assert accepted["tolerance"] > 50
+    assert sum(accepted.values()) < 500
+
+
+@pytest.mark.slow
+def test_many_generated_certificates_and_mutants(checker: Path) -> None:
+    assert sum(compare(3, 20_000, checker).values()) > 4_000
+
+
+def compare(seed: int, count: int, checker: Path) -> Counter[str]:
+    """Compare so many certificates, and return how many of each format were accepted."""
+    accepted = Counter[str]()
     with Stream(checker) as stream:
-        for case in islice(cases(seed), 300):
+        for case in islice(cases(seed), count):
             assert differs(stream, case) is None
-            accepted += by_the_kernel(*case[1:])[0] == 0
-    assert 50 < accepted < 250
+            if by_the_kernel(*case[1:])[0] == 0:
+                accepted["tolerance" if case[0].startswith("apart") else "robustness"] += 1
+    return accepted
 
 
 def test_long_input_does_not_exhaust_the_stack(checker: Path, tmp_path: Path) -> None:
@@ -112,6 +133,48 @@ def test_robustness_verify_uses_it(checker: Path, tmp_path: Path) -> None:
     assert "by the checker that is proved correct" in outcome.stdout
     assert CliRunner().invoke(robustness, [*arguments, str(good), "-r", "3"]).exit_code == 10
     assert CliRunner().invoke(robustness, [*arguments, str(bad)]).exit_code == 10
+
+
+APART = [
+    ("no trap", nx.complete_graph(6), Question(1, two_faces=True), "together"),
+    ("no violation", nx.wheel_graph(5), Question(1, two_faces=False, local=True), "together"),
+    ("a trap", nx.wheel_graph(5), Question(1, two_faces=True), "apart"),
+]
+
+
+@pytest.mark.parametrize(("made", "question", "verdict"), [case[1:] for case in APART], ids=[case[0] for case in APART])
+def test_what_malicious_nodes_can_do(
+    made: nx.Graph, question: Question, verdict: str, checker: Path, tmp_path: Path
+) -> None:
+    """Traps and violations: both checkers give the same claim, and compare it with a question in the same way."""
+    from certificates.__main__ import main
+
+    graph = Digraph.from_networkx(made)
+    answer = searching.decide(graph, question, Limits(), transcript=True)
+    assert answer.exists is (verdict == "apart")
+    evidence: dict[str, object] = {"kind": "refutation"}
+    if answer.sets is not None:
+        evidence = {"kind": "sets"} | {
+            name: sorted(ids) for name, ids in zip(("M", "S1", "S2"), answer.sets, strict=True)
+        }
+    faces, bound = 2 if question.two_faces else 1, "local" if question.local else "total"
+    claim = {"f": question.f, "faces": faces, "bound": bound, "verdict": verdict}
+    header = {"format": FORMAT_WITH_REFUTATIONS, "graph": graph.sha256, "claim": claim, "evidence": evidence}
+    data = json.dumps(header).encode() + b"\n" + (answer.transcript or b"")
+    (tmp_path / "graph.json").write_bytes(graph.canonical_bytes())
+    (tmp_path / "cert").write_bytes(data)
+    paths = [str(tmp_path / "graph.json"), str(tmp_path / "cert")]
+    assert str(verify_with(checker, graph.canonical_bytes(), data)) == str(
+        verify_tolerance(graph.canonical_bytes(), data)
+    )
+    for f, asked_faces, asked_bound in product((0, 1, 2), (1, 2), ("total", "local")):
+        asked = ["--expect", verdict, "-f", str(f), "--faces", str(asked_faces), "--bound", asked_bound]
+        assert run(checker, "verify", *paths, *asked).returncode == main(["verify", *paths, *asked]), asked
+    for foreign in (["-r", "1"], ["--window", "2"], ["--expect", "robust"]):
+        assert run(checker, "verify", *paths, *foreign).returncode == main(["verify", *paths, *foreign]) == 10
+    assert run(checker, "verify", *paths, "--expect", verdict).returncode == 2
+    outcome = CliRunner().invoke(robustness, ["verify", *paths, "--checker", "verified"])
+    assert outcome.exit_code == 0, outcome.output
 
 
 def test_the_proofs_are_closed(checker: Path) -> None:
