@@ -190,7 +190,8 @@ let () =
       match files with
       | [ certificate; graph ] -> (
         try run graph certificate q with
-        | Stack_overflow | Out_of_memory -> fail 1 "internal error: out of memory")
+        | Out_of_memory -> fail 3 "malformed: the files do not fit into memory"
+        | Stack_overflow -> fail 1 "internal error: the stack is too small")
       | _ -> usage "a graph and a certificate are needed") in
   let nothing = { verdict = None; r = None; s = None; window = None; f = None; faces = None; bound = None } in
   match Array.to_list Sys.argv with

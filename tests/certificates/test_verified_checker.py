@@ -27,7 +27,12 @@ from tests.certificates.make_samples import HERE
 
 ROOT = Path(__file__).parents[2]
 FORMAL = ROOT / "certificates" / "formal"
-SAMPLES = sorted(path for folder in ("accepted", "rejected", "malformed") for path in (HERE / folder).glob("*.cert"))
+SAMPLES = sorted(
+    path
+    for place in (HERE, HERE / "tolerance")
+    for folder in ("accepted", "rejected", "malformed")
+    for path in (place / folder).glob("*.cert")
+)
 WHEEL = Digraph.from_networkx(nx.wheel_graph(5))
 
 
