@@ -104,14 +104,14 @@ def small() -> None:
 
 
 def backbones(most: int, timeout: float, every: int) -> None:
-    """Print links needed for (2,2), the bound and the time for every topohub graph of up to ``most`` nodes.
+    """Print links found for (2,2), the bound and the time for every topohub graph of up to ``most`` nodes.
 
     ``every``: of these only each so manieth, in the order of their numbers of nodes.
     """
     from robustness.files.topohub_names import list_names
 
     proven = total = 0
-    print("| network | nodes | links needed | at least | s |")
+    print("| network | nodes | links found | at least | s |")
     print("|---|---|---|---|---|")
     networks = [(name, rb.read_topology(f"topohub:{name}")) for name in list_names()]
     networks = sorted((pair for pair in networks if 4 <= pair[1].n <= most), key=lambda pair: pair[1].n)

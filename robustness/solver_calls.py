@@ -51,7 +51,7 @@ def has_passed(limits: Limits, moment: float) -> bool:
     return limits.deadline is not None and moment >= limits.deadline
 
 
-def solve_within(model: Any, limits: Limits, effort: float | None = None, *, relaxed: bool = False) -> Outcome:
+def solve_within(model: Any, limits: Limits, effort: float | None = None, *, relaxed: bool | None = None) -> Outcome:
     """Return what the solver says about the model, as far as it is believed: the rule is in the module.
 
     Parameters
@@ -62,9 +62,9 @@ def solve_within(model: Any, limits: Limits, effort: float | None = None, *, rel
         Ctrl-C is served while the solver runs, and stops it.
     effort : float or None
         Bounds the work in the solver's own units, which are counted and not timed.
-    relaxed : bool
-        More of the work goes into the linear relaxation: better bounds, for models whose rows are sums, rather than
-        solutions.
+    relaxed : bool or None
+        True: more of the work goes into the linear relaxation: better bounds, for models whose rows are sums, rather
+        than solutions. False: none does, for questions without an objective.
 
     Raises
     ------
@@ -81,8 +81,8 @@ def solve_within(model: Any, limits: Limits, effort: float | None = None, *, rel
         solver.parameters.max_time_in_seconds = max(limits.seconds_left(), 1e-3)
     if effort is not None:
         solver.parameters.max_deterministic_time = effort
-    if relaxed:
-        solver.parameters.linearization_level = 2
+    if relaxed is not None:
+        solver.parameters.linearization_level = 2 if relaxed else 0
     told = [-math.inf]
 
     def note(bound: float) -> None:

@@ -4,9 +4,9 @@ An implicit hitting set (Moreno-Centeno and Karp 2013). Each round the master pr
 that it leaves open are found, by growing sides and then exactly; a repair breaks them one after the other until the
 network reaches the goal, and gives up what is superfluous. Every violation met on the way becomes a demand: it is open
 under the proposal, since the proposal lies inside the repaired choice. The proposal's cost is a lower bound, the
-repaired choice an upper one; both improve until they meet. Every second round asks the master only for some choice that
-costs less than the best one and meets all demands: that is quicker, its violations are harder to evade, and when there
-is none the best is optimal. Between rounds the best is taken apart a little and repaired in another way.
+repaired choice an upper one; both improve until they meet. Once a choice is known, the master is mostly asked for any
+choice that costs less and meets all demands: that is quicker than to minimise, its violations are harder to evade, and
+when there is none, the best is optimal. Between rounds the best is taken apart a little and repaired in another way.
 """
 
 from __future__ import annotations
@@ -54,6 +54,12 @@ _MOST_PARTNERS = 8
 #: The solver's units of effort for the first bound, about a second, and for a call in the first round; in the rounds it
 #: grows by a factor whenever a call did not finish.
 _FIRST_EFFORT, _EFFORT, _GROWTH = 1.0, 4.0, 1.3
+
+#: A proposal is repaired in so many ways, divided by the square of the number of nodes, and in one at least.
+_REPAIRED = 2000
+
+#: Each so manieth proposal is a cheapest one, which takes longest.
+_SELDOM = 3
 
 #: At most so many links of the best choice are taken away at once, to be replaced by others.
 _MOST_SHAKEN = 4
@@ -156,8 +162,6 @@ class Search:
         if self.is_done:
             return
         self._master = Master(self.graph, self.actions, self.limits)
-        if self.best is not None:
-            self._master.stay_below(self.cost(self.best))
         self._spread(self._base)
         self._grow(self._base)
         for part in self.parts:
@@ -178,20 +182,25 @@ class Search:
         """Propose, and repair; raise :class:`Undecided` when a limit came."""
         if self._master is None:
             raise InternalError("a round without a master problem: please report")
-        any_choice = turn % 2 == 0 and self.best is not None
-        proposal = self._master.solve(self.limits.share(0.7), self.best, self._effort, any_choice=any_choice)
+        any_choice = self.best is not None and (turn % _SELDOM != 1 or self.cost(self.best) == self.bound + 1)
+        within = None if self.best is None else self.cost(self.best) - 1
+        proposal = self._master.solve(
+            self.limits.share(0.7), self.best, self._effort, within=within, any_choice=any_choice
+        )
         self._believe(proposal)
-        if (not any_choice and not proposal.is_optimal) or proposal.chosen is None:
+        if proposal.chosen is None:
             self._effort *= _GROWTH
         if proposal.chosen is not None and not self.is_done:
             known = len(self.rows), len(self.covers)
             heard = self._heard(proposal.chosen)
             self._spread(heard)
             self._grow(heard)
-            repaired = self._repair(proposal.chosen, turn)
-            if (len(self.rows), len(self.covers)) == known and proposal.is_optimal:  # it reaches the goal itself
+            for again in range(1 + _REPAIRED // self.graph.n**2):
+                self._improve(self._repair(proposal.chosen, turn, again))
+                if (len(self.rows), len(self.covers)) == known:  # it reaches the goal itself
+                    break
+            if (len(self.rows), len(self.covers)) == known and proposal.is_optimal:
                 self.bound = max(self.bound, self.cost(proposal.chosen))
-            self._improve(repaired)
         if not self.is_done and self.best is not None:
             self._improve(self._shaken(self.best, turn))
         if not self.is_done and self.limits.expired():
@@ -199,13 +208,12 @@ class Search:
 
     def _believe(self, proposal: Proposal) -> None:
         """Take in what a call of the solver says about the bound."""
-        if proposal.bound is None:
-            if self.best is None:
-                self._rule_out()
-            else:
-                self.bound = max(self.bound, self.cost(self.best))
-        elif proposal.bound > self.bound:
-            self.bound = proposal.bound
+        if proposal.bound is None and self.best is None:
+            self._rule_out()
+            return
+        proven = self.cost(self.best or ()) if proposal.bound is None else proposal.bound
+        if proven > self.bound:
+            self.bound = proven
             self._tell()
 
     def _shaken(self, chosen: frozenset[int], turn: int) -> frozenset[int] | None:
@@ -239,8 +247,6 @@ class Search:
             return
         if self.best is None or self.cost(chosen) < self.cost(self.best):
             self.best = chosen
-            if self._master is not None:
-                self._master.stay_below(self.cost(chosen))
             self._tell()
 
     def _grow(self, heard: Sequence[int]) -> None:
@@ -291,10 +297,10 @@ class Search:
                 heard[head] |= 1 << tail
         return heard
 
-    def _repair(self, proposal: frozenset[int], turn: int) -> frozenset[int] | None:
+    def _repair(self, proposal: frozenset[int], turn: int, again: int = 0) -> frozenset[int] | None:
         """Break what the proposal leaves open; return a choice that reaches the goal, or None when caps forbid it."""
         chosen = set(proposal)
-        rng = random.Random(f"{self.limits.seed} {turn}")
+        rng = random.Random(f"{self.limits.seed} {turn} {again}")
         while True:
             pair = self._open_pair(chosen)
             if pair is None:

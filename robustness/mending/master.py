@@ -50,7 +50,7 @@ _LARGEST_MULTIPLE = 5040
 class Proposal(NamedTuple):
     """What the solver said: a choice (indices; None without one), a proven lower bound, and whether it is optimal.
 
-    ``bound`` is None when no choice can meet the demands, within the budget and below what is known.
+    ``bound`` is None when no choice can meet the demands, within what it may cost.
     """
 
     chosen: frozenset[int] | None
@@ -86,8 +86,12 @@ class Master:
         if actions.uniform:
             self._break_symmetry(graph)
         self._cost = sum(item.cost * x for item, x in zip(actions.items, self._x, strict=True))
+        self._dearest = sum(item.cost for item in actions.items)
         if actions.budget is not None:
-            self._model.add(self._cost <= actions.budget)
+            self._dearest = min(self._dearest, actions.budget)
+        #: What a choice may cost: an interval that every call sets anew.
+        self._most = self._model.new_int_var(0, self._dearest, "")
+        self._model.add(self._cost <= self._most)
 
     def add(self, first: Side, second: Side) -> None:
         """Add one demand: two sides that fit."""
@@ -111,19 +115,24 @@ class Master:
         missing = lacking(cover, self._n, part.r)
         self._model.add(sum(outer) >= missing * (1 - self._slow[part]))
 
-    def stay_below(self, cost: int) -> None:
-        """Look only for what costs less from now on."""
-        self._model.add(self._cost <= cost - 1)
-
     def solve(
-        self, limits: Limits, hint: frozenset[int] | None, effort: float | None = None, *, any_choice: bool = False
+        self,
+        limits: Limits,
+        hint: frozenset[int] | None,
+        effort: float | None = None,
+        *,
+        within: int | None = None,
+        any_choice: bool = False,
     ) -> Proposal:
         """Return the cheapest choice, as far as the limits, and the solver's units of effort, allow.
 
-        ``any_choice``: any that meets the demands; nothing is said about the bound unless there is none.
+        ``within``: it may cost so much. ``any_choice``: any that meets the demands will do; nothing is said about the
+        bound unless there is none.
         """
         self._model.clear_hints()  # type: ignore[no-untyped-call]
         self._model.clear_objective()  # type: ignore[no-untyped-call]
+        most = self._dearest if within is None else min(within, self._dearest)
+        self._model.proto.variables[self._most.index].domain[1] = most
         if not any_choice:
             self._model.minimize(self._cost)
         if hint is not None:
