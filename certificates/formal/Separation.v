@@ -27,34 +27,44 @@ Definition hark_here (t : threat) (s : roles) (last : option glance) : option ro
   | None => None
   end.
 
-Inductive settled_roles := Empty | Rest (s : roles) | Endless.
+(* What is remembered of the last looks, and of the last budget: Z and Q1 u Q2. It need not be right. *)
+Record memory := Memory { of_here : option glance; of_there : option glance; of_budget : option (bits * bits) }.
+Definition forgotten : memory := Memory None None None.
 
-Fixpoint settle_roles (fuel : nat) (t : threat) (s : roles) (seen_here seen_there : option glance) : settled_roles :=
+Definition budget_now (t : threat) (s : roles) (m : memory) : option roles :=
+  match of_budget m with
+  | Some (Z, maybe) => if equal Z (bad s) && equal maybe (union (pQ (here s)) (pQ (there s))) then Some s else budget t s
+  | None => budget t s
+  end.
+
+Inductive settled_roles := Empty | Rest (s : roles) (m : memory) | Endless.
+
+Fixpoint settle_roles (fuel : nat) (t : threat) (s : roles) (m : memory) : settled_roles :=
   match fuel with
   | 0 => Endless
   | S fuel' =>
     let s1 := role (rounds (asks t)) (two_faces t) s in
     if impossible (two_faces t) s1 then Empty else
-    match budget t s1 with
+    match budget_now t s1 m with
     | None => Empty
     | Some s2 =>
-      if negb (equal_roles s1 s2) then settle_roles fuel' t s2 seen_here seen_there else
+      let kept := Some (bad s1, union (pQ (here s1)) (pQ (there s1))) in
+      if negb (equal_roles s1 s2) then settle_roles fuel' t s2 (Memory (of_here m) (of_there m) kept) else
       let left := left_total t (bad s2) in
-      match hark_here t s2 seen_here with
+      match hark_here t s2 (of_here m) with
       | None => Empty
       | Some s3 =>
-        match hark_here t (flip s3) seen_there with
+        match hark_here t (flip s3) (of_there m) with
         | None => Empty
         | Some s4 =>
-          let now_here := Some (glance_at t (here s2) (bad s2) left) in
-          let now_there := Some (glance_at t (there s2) (bad s2) left) in
-          if negb (equal_roles s2 (flip s4)) then settle_roles fuel' t (flip s4) now_here now_there
-          else if shares t s2 then Rest s2 else Empty
+          let now := Memory (Some (glance_at t (here s2) (bad s2) left)) (Some (glance_at t (there s2) (bad s2) left)) kept in
+          if negb (equal_roles s2 (flip s4)) then settle_roles fuel' t (flip s4) now
+          else if shares t s2 then Rest s2 now else Empty
         end
       end
     end
   end.
-Definition settle_all (t : threat) (s : roles) : settled_roles := settle_roles (rounds (asks t)) t s None None.
+Definition settle_all (t : threat) (s : roles) (m : memory) : settled_roles := settle_roles (rounds (asks t)) t s m.
 
 (* EXCLUDE j i, from the byte after the opcode: the place after it, and the state without j, or None when j is in T. *)
 Definition exclude_here (t : threat) (body : bytes) (pos : nat) (s : roles) : option (nat * option roles) :=
@@ -72,35 +82,36 @@ Definition exclude_here (t : threat) (body : bytes) (pos : nat) (s : roles) : op
     end
   end.
 
-Inductive counted_roles := ClosedAt (pos : nat) | OpenAt (pos : nat) (s : roles) | WrongAt (pos : nat).
+Inductive counted_roles := ClosedAt (pos : nat) | OpenAt (pos : nat) (s : roles) (m : memory) | WrongAt (pos : nat).
 
 (* The runs of EXCLUDE, each followed by PROPAGATE, before a branch. [run]: an EXCLUDE came just before. *)
-Fixpoint count_roles (fuel : nat) (t : threat) (body : bytes) (pos : nat) (s : roles) (run : bool) : counted_roles :=
+Fixpoint count_roles (fuel : nat) (t : threat) (body : bytes) (pos : nat) (s : roles) (m : memory) (run : bool)
+  : counted_roles :=
   match fuel with
   | 0 => WrongAt pos
   | S fuel' =>
     let op := next body pos in
     if op =? 6 then
       match exclude_here t body (S pos) s with
-      | Some (pos', Some s') => count_roles fuel' t body pos' s' true
+      | Some (pos', Some s') => count_roles fuel' t body pos' s' m true
       | Some (pos', None) => ClosedAt pos'
       | None => WrongAt pos
       end
     else if op =? 7 then
       match exclude_here t body (S pos) (flip s) with
-      | Some (pos', Some s') => count_roles fuel' t body pos' (flip s') true
+      | Some (pos', Some s') => count_roles fuel' t body pos' (flip s') m true
       | Some (pos', None) => ClosedAt pos'
       | None => WrongAt pos
       end
     else if run then
       if op =? 0 then
-        match settle_all t s with
+        match settle_all t s m with
         | Empty => ClosedAt (S pos)
-        | Rest s' => count_roles fuel' t body (S pos) s' false
+        | Rest s' m' => count_roles fuel' t body (S pos) s' m' false
         | Endless => WrongAt pos
         end
       else WrongAt pos
-    else OpenAt pos s
+    else OpenAt pos s m
   end.
 
 (* The true and the false child of a literal on this side. *)
@@ -133,30 +144,33 @@ Definition branch_roles (two : bool) (op : nat) (s : roles) (x : row) (symmetric
   | _ => None
   end.
 
-(* The tree in preorder; [waiting] are the false children to come, each with whether it is symmetric. *)
-Fixpoint walk_roles (fuel : nat) (t : threat) (body : bytes) (pos : nat) (s : roles) (symmetric : bool)
-  (waiting : list (roles * bool)) : replay :=
+(* The tree in preorder; [waiting] are the false children to come, each with what is remembered and whether it is
+   symmetric. *)
+Fixpoint walk_roles (fuel : nat) (t : threat) (body : bytes) (pos : nat) (s : roles) (m : memory) (symmetric : bool)
+  (waiting : list (roles * memory * bool)) : replay :=
   match fuel with
   | 0 => Refused pos
   | S fuel' =>
     let close pos' :=
       match waiting with
       | [] => if pos' =? len body then Refuted else Refused pos'
-      | (s', symmetric') :: rest => walk_roles fuel' t body pos' s' symmetric' rest
+      | (s', m', symmetric') :: rest => walk_roles fuel' t body pos' s' m' symmetric' rest
       end in
-    match settle_all t s with
+    match settle_all t s m with
     | Empty => close pos
     | Endless => Refused pos
-    | Rest s1 =>
-      match count_roles (S (len body)) t body pos s1 false with
+    | Rest s1 m1 =>
+      match count_roles (S (len body)) t body pos s1 m1 false with
       | ClosedAt pos' => close pos'
       | WrongAt pos' => Refused pos'
-      | OpenAt pos' s2 =>
+      | OpenAt pos' s2 m2 =>
         match node (asks t) body (S pos') with
         | Some (x, pos2) =>
           let op := next body pos' in
           match branch_roles (two_faces t) op s2 x symmetric with
-          | Some (yes, no) => walk_roles fuel' t body pos2 yes false ((no, op =? 1) :: waiting)
+          | Some (yes, no) =>
+            let m3 := if op =? 1 then Memory (of_here m2) (of_here m2) (of_budget m2) else m2 in
+            walk_roles fuel' t body pos2 yes m2 false ((no, m3, op =? 1) :: waiting)
           | None => Refused pos'
           end
         | None => Refused pos'
@@ -168,4 +182,4 @@ Fixpoint walk_roles (fuel : nat) (t : threat) (body : bytes) (pos : nat) (s : ro
 Definition keeps_together (t : threat) (body : bytes) : replay :=
   let nobody := diff (full (asks t)) (full (asks t)) in
   let anybody := Part (full (asks t)) (full (asks t)) nobody nobody in
-  walk_roles (2 * len body + 2) t body 0 (Roles anybody anybody nobody) true [].
+  walk_roles (2 * len body + 2) t body 0 (Roles anybody anybody nobody) forgotten true [].

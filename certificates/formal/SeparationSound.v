@@ -27,17 +27,24 @@ Proof.
   destruct (hark _ _ _ _ _ _ _ _ _ _) as [[P F]|]; [|assumption]. destruct W as [W1 W2]. split; [split|exact B|exact C]; cbn; auto.
 Qed.
 
-Lemma settle_roles_sound : forall N1 N2 M1 M2, solution N1 N2 M1 M2 -> forall fuel s a b, suits N1 N2 M1 M2 s ->
-  match settle_roles fuel t s a b with Empty => False | Rest u => suits N1 N2 M1 M2 u | Endless => True end.
+Lemma budget_now_sound : forall N1 N2 M1 M2 s m, solution N1 N2 M1 M2 -> suits N1 N2 M1 M2 s ->
+  match budget_now t s m with Some u => suits N1 N2 M1 M2 u | None => False end.
 Proof.
-  intros N1 N2 M1 M2 S fuel. induction fuel as [|fuel IH]; intros s a b ST; [exact I|]. cbn [settle_roles]. cbv zeta.
+  intros N1 N2 M1 M2 s m S ST. unfold budget_now. pose proof (budget_sound n h needs t OK N1 N2 M1 M2 s S ST) as B.
+  destruct (of_budget m) as [[Z maybe]|]; [|assumption]. destruct (_ && _); assumption.
+Qed.
+
+Lemma settle_roles_sound : forall N1 N2 M1 M2, solution N1 N2 M1 M2 -> forall fuel s m, suits N1 N2 M1 M2 s ->
+  match settle_roles fuel t s m with Empty => False | Rest u _ => suits N1 N2 M1 M2 u | Endless => True end.
+Proof.
+  intros N1 N2 M1 M2 S fuel. induction fuel as [|fuel IH]; intros s m ST; [exact I|]. cbn [settle_roles]. cbv zeta.
   pose proof (role_keeps n h needs t (rounds (asks t)) N1 N2 M1 M2 s S ST) as S1. set (s1 := role _ _ s) in *.
   rewrite (possible n h needs t N1 N2 M1 M2 s1 S S1).
-  pose proof (budget_sound n h needs t OK N1 N2 M1 M2 s1 S S1) as S2.
-  destruct (budget t s1) as [s2|]; [|assumption]. destruct (negb (equal_roles s1 s2)); [apply IH; assumption|].
-  pose proof (hark_here_sound N1 N2 M1 M2 s2 a S S2) as S3. destruct (hark_here t s2 a) as [s3|]; [|assumption].
-  pose proof (hark_here_sound N2 N1 M2 M1 (flip s3) b (swap _ _ _ _ S) (suits_flip _ _ _ _ _ S3)) as S4.
-  destruct (hark_here t (flip s3) b) as [s4|]; [|assumption].
+  pose proof (budget_now_sound N1 N2 M1 M2 s1 m S S1) as S2.
+  destruct (budget_now t s1 m) as [s2|]; [|assumption]. destruct (negb (equal_roles s1 s2)); [apply IH; assumption|].
+  pose proof (hark_here_sound N1 N2 M1 M2 s2 (of_here m) S S2) as S3. destruct (hark_here t s2 (of_here m)) as [s3|]; [|assumption].
+  pose proof (hark_here_sound N2 N1 M2 M1 (flip s3) (of_there m) (swap _ _ _ _ S) (suits_flip _ _ _ _ _ S3)) as S4.
+  destruct (hark_here t (flip s3) (of_there m)) as [s4|]; [|assumption].
   destruct (negb (equal_roles s2 (flip s4))); [apply IH; apply suits_flip; assumption|].
   rewrite (shares_sound n h needs t OK N1 N2 M1 M2 s2 S S2). assumption.
 Qed.
@@ -74,11 +81,11 @@ Proof.
   - apply drop_normal; assumption.
 Qed.
 
-Lemma count_roles_sound : forall N1 N2 M1 M2, solution N1 N2 M1 M2 -> forall body fuel pos s run, suits N1 N2 M1 M2 s ->
-  match count_roles fuel t body pos s run with
-  | ClosedAt _ => False | OpenAt _ u => suits N1 N2 M1 M2 u | WrongAt _ => True end.
+Lemma count_roles_sound : forall N1 N2 M1 M2, solution N1 N2 M1 M2 -> forall body fuel pos s m run, suits N1 N2 M1 M2 s ->
+  match count_roles fuel t body pos s m run with
+  | ClosedAt _ => False | OpenAt _ u _ => suits N1 N2 M1 M2 u | WrongAt _ => True end.
 Proof.
-  intros N1 N2 M1 M2 S body fuel. induction fuel as [|fuel IH]; intros pos s run ST; [exact I|]. cbn [count_roles]. cbv zeta.
+  intros N1 N2 M1 M2 S body fuel. induction fuel as [|fuel IH]; intros pos s m run ST; [exact I|]. cbn [count_roles]. cbv zeta.
   destruct (next body pos =? 6).
   - pose proof (exclude_here_sound N1 N2 M1 M2 body (Datatypes.S pos) s S ST) as E.
     destruct (exclude_here _ _ _ _) as [[p [u|]]|]; [|contradiction|exact I]. apply IH. assumption.
@@ -86,8 +93,8 @@ Proof.
     + pose proof (exclude_here_sound N2 N1 M2 M1 body (Datatypes.S pos) (flip s) (swap _ _ _ _ S) (suits_flip _ _ _ _ _ ST)) as E.
       destruct (exclude_here _ _ _ _) as [[p [u|]]|]; [|contradiction|exact I]. apply IH. apply suits_flip. assumption.
     + destruct run; [|assumption]. destruct (next body pos =? 0); [|exact I].
-      pose proof (settle_roles_sound N1 N2 M1 M2 S (rounds (asks t)) s None None ST) as E. unfold settle_all.
-      destruct (settle_roles _ _ _ _ _); [assumption|apply IH; assumption|exact I].
+      pose proof (settle_roles_sound N1 N2 M1 M2 S (rounds (asks t)) s m ST) as E. unfold settle_all.
+      destruct (settle_roles _ _ _ _); [assumption|apply IH; assumption|exact I].
 Qed.
 
 Definition nothing (s : roles) : Prop := forall N1 N2 M1 M2, solution N1 N2 M1 M2 -> suits N1 N2 M1 M2 s -> False.
@@ -155,24 +162,24 @@ Proof.
     destruct (M2 (id x)); [apply (HY _ _ _ _ S)|apply (HN _ _ _ _ S)]; apply suits_flip; assumption.
 Qed.
 
-Lemma walk_roles_sound : forall body fuel pos s symmetric waiting, walk_roles fuel t body pos s symmetric waiting = Refuted ->
-  nothing s /\ Forall (fun w => nothing (fst w)) waiting.
+Lemma walk_roles_sound : forall body fuel pos s m symmetric waiting, walk_roles fuel t body pos s m symmetric waiting = Refuted ->
+  nothing s /\ Forall (fun w => nothing (fst (fst w))) waiting.
 Proof.
-  intros body fuel. induction fuel as [|fuel IH]; intros pos s symmetric waiting W; [discriminate|]. cbn [walk_roles] in W. cbv zeta in W.
+  intros body fuel. induction fuel as [|fuel IH]; intros pos s m symmetric waiting W; [discriminate|]. cbn [walk_roles] in W. cbv zeta in W.
   assert (CL : forall pos', match waiting with
       | [] => if pos' =? len body then Refuted else Refused pos'
-      | (s', symmetric') :: rest => walk_roles fuel t body pos' s' symmetric' rest end = Refuted ->
-      Forall (fun w => nothing (fst w)) waiting).
-  { intros pos' Q. destruct waiting as [|[s' y'] rest]; [constructor|]. apply IH in Q. constructor; tauto. }
+      | (s', m', symmetric') :: rest => walk_roles fuel t body pos' s' m' symmetric' rest end = Refuted ->
+      Forall (fun w => nothing (fst (fst w))) waiting).
+  { intros pos' Q. destruct waiting as [|[[s' m'] y'] rest]; [constructor|]. apply IH in Q. constructor; tauto. }
   assert (SS : forall N1 N2 M1 M2, solution N1 N2 M1 M2 -> suits N1 N2 M1 M2 s ->
-    match settle_all t s with Empty => False | Rest u => suits N1 N2 M1 M2 u | Endless => True end)
+    match settle_all t s m with Empty => False | Rest u _ => suits N1 N2 M1 M2 u | Endless => True end)
     by (intros N1 N2 M1 M2 S ST; apply settle_roles_sound; assumption).
-  destruct (settle_all t s) as [|s1|]; [|  |discriminate].
+  destruct (settle_all t s m) as [|s1 m1|]; [| |discriminate].
   { split; [|eauto]. intros N1 N2 M1 M2 S ST. exact (SS N1 N2 M1 M2 S ST). }
   assert (CS : forall N1 N2 M1 M2, solution N1 N2 M1 M2 -> suits N1 N2 M1 M2 s ->
-    match count_roles (S (len body)) t body pos s1 false with ClosedAt _ => False | OpenAt _ u => suits N1 N2 M1 M2 u | WrongAt _ => True end)
+    match count_roles (S (len body)) t body pos s1 m1 false with ClosedAt _ => False | OpenAt _ u _ => suits N1 N2 M1 M2 u | WrongAt _ => True end)
     by (intros N1 N2 M1 M2 S ST; apply count_roles_sound; [assumption|exact (SS N1 N2 M1 M2 S ST)]).
-  destruct (count_roles _ _ _ _ _ _) as [p|p s2|p]; [| |discriminate].
+  destruct (count_roles _ _ _ _ _ _ _) as [p|p s2 m2|p]; [| |discriminate].
   { split; [|eauto]. intros N1 N2 M1 M2 S ST. exact (CS N1 N2 M1 M2 S ST). }
   destruct (node (asks t) body (S p)) as [[x p2]|] eqn:N; [|discriminate]. apply node_fine in N.
   destruct (branch_roles _ _ s2 x symmetric) as [[yes no]|] eqn:B; [|discriminate].
