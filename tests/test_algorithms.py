@@ -375,3 +375,33 @@ def test_removing_few_in_arcs_per_node_costs_as_much_r(graph, data, most):
     for r, s_max in transform.profile(graph, NO_LIMITS).items():
         if r > most:
             assert after[r - most] >= s_max
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_large_sets_are_counted_like_small_ones(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Arrays over the whole graph and a loop over the members say the same of X_S^r, of traps and of violations."""
+    from robustness import definitions
+    from robustness.threat_models import THREAT_MODELS
+    from robustness.traps import question as traps
+
+    random = np.random.default_rng(seed)
+    graph = Digraph.from_networkx(nx.gnp_random_graph(40, 0.15, seed=seed, directed=bool(seed % 2)))
+    roles = [random.choice(4, graph.n, p=[0.3, 0.3, 0.05, 0.35]) for _ in range(150)]
+    drawn = [[frozenset(np.flatnonzero(role == k).tolist()) for k in range(3)] for role in roles]
+
+    def answers() -> list[object]:
+        told: list[object] = []
+        for S1, S2, M in drawn:
+            told += [definitions.r_reachable_ids(graph, S1, r) for r in range(4)]
+            for threat in THREAT_MODELS.values():
+                for f in range(8):
+                    sides = (S1, S2) if threat.two_faces else (S1 | M, S2)
+                    told.append(traps.solves(graph, threat.question(f), traps.Sets(M, *sides)))
+        return told
+
+    with monkeypatch.context() as few:
+        few.setattr(definitions, "MANY", 0)
+        few.setattr(traps, "MANY", 0)
+        by_arrays = answers()
+    assert by_arrays == answers()
+    assert {True, False} <= {each for each in by_arrays if isinstance(each, bool)}

@@ -29,6 +29,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from robustness.definitions import MANY, heard_outside
 from robustness.digraph import Digraph
 from robustness.errors import InternalError
 
@@ -86,6 +87,10 @@ def obeys_bound(graph: Digraph, M: frozenset[int], f: int, *, local: bool) -> bo
     """Return whether M has at most f nodes, or (local) every node outside M hears at most f of them."""
     if not local:
         return len(M) <= f
+    if graph.n > MANY:
+        heard = graph.in_degrees - heard_outside(graph, M)
+        heard[list(M)] = 0
+        return bool((heard <= f).all())
     return all(len(M.intersection(graph.in_neighbours(i).tolist())) <= f for i in range(graph.n) if i not in M)
 
 
@@ -97,7 +102,12 @@ def solves(graph: Digraph, question: Question, sets: Sets) -> bool:
         return False
     if (M & (S1 | S2)) if two_faces else M - S1 - S2:
         return False
-    return obeys_bound(graph, M, f, local=local) and all(
+    if not obeys_bound(graph, M, f, local=local):
+        return False
+    if len(S1) + len(S2) > MANY:
+        heard = [heard_outside(graph, side | M if two_faces else side)[list(side - M)] for side in (S1, S2)]
+        return all(bool((count <= f).all()) for count in heard)
+    return all(
         sum(j not in side and not (two_faces and j in M) for j in graph.in_neighbours(i).tolist()) <= f
         for side in (S1, S2)
         for i in side - M
