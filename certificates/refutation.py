@@ -5,7 +5,7 @@ from __future__ import annotations
 from certificates.graph import CanonicalGraph
 from certificates.masks import Contradiction
 from certificates.rules import Question, State, excludes, settle
-from certificates.walk import EXCLUDE, Walk
+from certificates.walk import Walk
 
 __all__ = ["SATISFIED", "check_refutation"]
 
@@ -42,13 +42,12 @@ class _Replay(Walk[State]):
     def settle(self, state: State) -> None:
         settle(self.question, state)
 
-    def exclude(self, state: State) -> None:
-        """Read EXCLUDE j i1 [i2] and check that *count* excludes j from the satisfied nodes of its side."""
-        code = self.number(self.opcodes) - EXCLUDE
-        side, node = code & 1, self.number(self.n)
+    def exclude(self, state: State, which: int) -> None:
+        """Read j i1 [i2] and check that *count* excludes j from the satisfied nodes of its side."""
+        side, node = which & 1, self.number(self.n)
         if not state.P[side] >> node & 1:
             raise self.reject(f"EXCLUDE of node {node}, which is no candidate")
-        blockers = [self.number(self.n) for _ in range(1 + (code >> 1))]
+        blockers = [self.number(self.n) for _ in range(1 + (which >> 1))]
         if len(set(blockers)) < len(blockers) or not all(state.T[1 - side] >> i & 1 for i in blockers):
             raise self.reject(f"the blockers {blockers} are not different satisfied nodes of the other side")
         if not excludes(self.question, state, side, node, blockers):

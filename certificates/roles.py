@@ -173,7 +173,7 @@ def _peel_and_force(threat: Threat, state: Roles, side: int) -> None:
         if held > need:
             continue
         extra = (heard & loose).bit_count()
-        usable = min(extra, _left(threat, state, heard))
+        usable = min(extra, _left(threat, state, heard) if threat.local else left)
         if held + usable < need:
             if bit & normal:
                 raise Contradiction
@@ -218,26 +218,32 @@ def excludes(threat: Threat, state: Roles, side: int, j: int, i: int) -> bool:
     threat.look_at(0)
     other = 1 - side
     hears_i, hears_j = threat.hears[i] & ~(1 << j), threat.hears[j] & ~(1 << i)
-    sure_i, sure_j = hears_i & state.sure(other), hears_j & state.sure(side)
+    sure_i = hears_i & (state.P[other] | state.F[other] | state.Z & state.Q[other])
+    sure_j = hears_j & (state.P[side] | state.F[side] | state.Z & state.Q[side])
     either = sure_i | sure_j
+    needed = threat.need[i] + threat.need[j] - either.bit_count()
+    if threat.two_faces:
+        needed -= (sure_i & sure_j & state.Z).bit_count()
+    left_i = left_j = _left(threat, state, threat.hears[i])
+    if threat.local:
+        left_j = _left(threat, state, threat.hears[j])
+    if left_i + left_j < needed:
+        return True  # Each further malicious node gives one place at most to each of the two.
     one, two = hears_i & state.Q[other] & ~state.Z, hears_j & state.Q[side] & ~state.Z
-    places = either.bit_count()
-    left_i, left_j = _left(threat, state, threat.hears[i]), _left(threat, state, threat.hears[j])
     both = (one & two & ~either).bit_count()
     only_i, only_j = (one & ~two & ~either).bit_count(), (two & ~one & ~either).bit_count()
     if not threat.two_faces:
         if threat.local:
-            places += min(left_i, only_i + both) + min(left_j, only_j + both)
+            places = min(left_i, only_i + both) + min(left_j, only_j + both)
         else:
-            places += min(left_i, only_i + only_j + both)
+            places = min(left_i, only_i + only_j + both)
     else:
-        places += (sure_i & sure_j & state.Z).bit_count()
         again = (one & two & either).bit_count()
         if threat.local:
             # Nodes that have given a place already take from both budgets and give one more: they come last.
             spent_i, spent_j = min(left_i, only_i + both), min(left_j, only_j + both)
-            places += spent_i + spent_j + min(again, left_i - spent_i, left_j - spent_j)
+            places = spent_i + spent_j + min(again, left_i - spent_i, left_j - spent_j)
         else:
             twice = min(left_i, both)
-            places += 2 * twice + min(left_i - twice, again + only_i + only_j)
-    return places < threat.need[i] + threat.need[j]
+            places = 2 * twice + min(left_i - twice, again + only_i + only_j)
+    return places < needed

@@ -5,7 +5,7 @@ from __future__ import annotations
 from certificates.graph import CanonicalGraph
 from certificates.masks import Contradiction
 from certificates.roles import Roles, Threat, excludes, settle
-from certificates.walk import EXCLUDE, Walk
+from certificates.walk import Walk
 
 __all__ = ["check_separation"]
 
@@ -34,10 +34,9 @@ class _Replay(Walk[Roles]):
     def settle(self, state: Roles) -> None:
         settle(self.threat, state)
 
-    def exclude(self, state: Roles) -> None:
-        """Read EXCLUDE j i and check that *count* excludes j from the normal nodes of its side."""
-        side = self.number(self.opcodes) - EXCLUDE
-        node, blocker = self.number(self.n), self.number(self.n)
+    def exclude(self, state: Roles, which: int) -> None:
+        """Read j i and check that *count* excludes j from the normal nodes of side ``which``."""
+        side, node, blocker = which, self.number(self.n), self.number(self.n)
         if not state.P[side] >> node & 1:
             raise self.reject(f"EXCLUDE of node {node}, which is no candidate")
         if not state.T[1 - side] >> blocker & 1:

@@ -39,8 +39,8 @@ class Walk(ABC, Generic[S]):
         """Apply all rules but *count* until nothing changes, or raise :class:`Contradiction`."""
 
     @abstractmethod
-    def exclude(self, state: S) -> None:
-        """Read one EXCLUDE and apply it, or raise :class:`Contradiction`."""
+    def exclude(self, state: S, which: int) -> None:
+        """Read the operands of the opcode EXCLUDE + ``which`` and apply it, or raise :class:`Contradiction`."""
 
     @abstractmethod
     def branch(self, state: S, kind: int, side: int, node: int) -> tuple[S, S] | None:
@@ -92,8 +92,9 @@ class Walk(ABC, Generic[S]):
     def exclusions(self, state: S) -> None:
         """Read the runs of EXCLUDE steps, each followed by PROPAGATE, that come before a branch."""
         while EXCLUDE <= self.peek() < self.opcodes:
-            while EXCLUDE <= self.peek() < self.opcodes:
-                self.exclude(state)
+            while EXCLUDE <= (opcode := self.peek()) < self.opcodes:
+                self.place += 1
+                self.exclude(state, opcode - EXCLUDE)
             if self.number(self.opcodes) != PROPAGATE:
                 raise self.reject("EXCLUDE steps without a PROPAGATE after them")
             self.settle(state)
