@@ -69,7 +69,7 @@ coverage-kernel: $(READY) ## every branch of the trusted kernel is taken by its 
 FORMAL := $(BUILD)/formal
 PROOFS := Counting Bytes Robustness Apart Sets Rules Soundness Refutation RefutationSound Tables Evidence Checks Growth \
 	Roles RolesSound RolesCount Separation SeparationSound Tolerance Canonical Reading Lemmas Certificate Unique Traps \
-	Examples Proposition1 Assumptions Extract
+	Examples Proposition1 Literal Assumptions Extract
 
 $(FORMAL)/robustness-verified: $(wildcard certificates/formal/*)
 	@command -v coqc >/dev/null && command -v ocamlopt >/dev/null || \

@@ -1,5 +1,5 @@
 (* What the theorems rest on: nothing but Coq. *)
-From Formal Require Import Certificate Unique Lemmas Tolerance Traps Examples Proposition1.
+From Formal Require Import Certificate Unique Lemmas Tolerance Traps Examples Proposition1 Literal.
 Print Assumptions verify_sound.
 Print Assumptions describes_one.
 Print Assumptions lemma_1_i.
@@ -19,3 +19,6 @@ Print Assumptions a_1_robust_digraph_with_a_node_that_hears_nobody.
 Print Assumptions a_graph_without_arcs_is_0_robust.
 Print Assumptions the_last_line_has_no_converse.
 Print Assumptions proposition_1_corrected.
+Print Assumptions the_literal_graph_is_not_f1_f1_robust.
+Print Assumptions the_literal_graph_has_an_in_degree_of_2.
+Print Assumptions no_trap_and_not_2f1_robust.

@@ -1,6 +1,6 @@
 (* Where the source paper is wrong, by computation (docs/lemma-1.md): the definition is tried on all pairs of sets. *)
 From Coq Require Import List Bool Arith Lia.
-From Formal Require Import Counting Robustness.
+From Formal Require Import Counting Robustness Evidence Lemmas Apart.
 Import ListNotations.
 
 (* All sets of nodes below n, as lists of truth values. *)
@@ -89,4 +89,27 @@ Proof.
   - specialize (Q 0). simpl in Q. discriminate Q. lia.
   - specialize (Q 1). simpl in Q. discriminate Q. lia.
   - vm_compute in Q. lia.
+Qed.
+
+(* (2f+1)-robustness is not necessary for having no trap: K_{3f+1} has none. *)
+Theorem no_trap_and_not_2f1_robust : forall f, 1 <= f ->
+  together (complete (3 * f + 1)) f true false /\ ~ robust (complete (3 * f + 1)) (2 * f + 1) 1.
+Proof.
+  intros f F. set (n := 3 * f + 1). split.
+  - intros M S1 S2 [BM (i & I & Si & Mi) (j & J & Sj & Mj) D [D1 D2] F1 F2]. unfold obeys in BM. cbv beta iota in BM.
+    assert (BIG : forall S k, k < n -> S k = true -> (forall v, v < n -> S v = true -> M v = true -> False) ->
+      size (complete n) (fun j => hears (complete n) k j && negb (S j || (true && M j))) <= f -> n <= cnt (seq 0 n) S + cnt (seq 0 n) M + f).
+    { intros S k K Sk DM H. apply Nat.le_trans with (cnt (seq 0 n) S + cnt (seq 0 n) M + size (complete n) (fun j => hears (complete n) k j && negb (S j || (true && M j)))); [|lia].
+      rewrite <- (seq_length n 0) at 1. rewrite <- (cnt_true (seq 0 n) (fun _ => true)) by reflexivity. unfold size. cbn [nodes complete hears].
+      rewrite !cnt_sum, <- !sum_add. apply sum_le. intros v _. destruct (Nat.eqb_spec v k) as [E|E]; [subst v; rewrite Sk; destruct (M k)|destruct (S v), (M v)]; simpl; lia. }
+    specialize (BIG S1 i I Si (fun v V A B => D1 v V B A) (F1 i I Si Mi)) as B1.
+    specialize (BIG S2 j J Sj (fun v V A B => D2 v V B A) (F2 j J Sj Mj)) as B2.
+    assert (ALL : cnt (seq 0 n) S1 + cnt (seq 0 n) S2 + cnt (seq 0 n) M <= n).
+    { rewrite <- (seq_length n 0) at 4. rewrite <- (cnt_true (seq 0 n) (fun _ => true)) by reflexivity.
+      rewrite !cnt_sum, <- !sum_add. apply sum_le. intros v V. apply in_seq in V. specialize (D v ltac:(simpl; lia)).
+      specialize (D1 v ltac:(simpl; lia)). specialize (D2 v ltac:(simpl; lia)).
+      destruct (S1 v), (S2 v), (M v); simpl; try lia; exfalso; auto. }
+    unfold size in BM. cbn [nodes complete] in BM. lia.
+  - intros R. apply lemma_1_v in R; [|simpl; lia|lia]. cbn [nodes complete] in R.
+    pose proof (Nat.div_mod_eq (n + 1) 2). pose proof (Nat.mod_upper_bound (n + 1) 2). lia.
 Qed.
