@@ -12,7 +12,7 @@ when there is none, the best is optimal. Between rounds the best is taken apart 
 from __future__ import annotations
 
 import random
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -145,6 +145,8 @@ class Search:
             self.is_impossible = self.witness is not None
             if self.is_impossible:
                 return
+            if self._keeps_caps(everything):
+                self._improve(everything)
             self._start()
             turn = 1
             while not self.is_done:
@@ -155,9 +157,13 @@ class Search:
 
     def _start(self) -> None:
         """Find a first choice, write the first demands, and find the first bound and better choices."""
+        if self._keeps_caps(self.actions.required) and self._is_enough(self.actions.required, self.limits.share(0.5)):
+            self.bound = self.cost(self.actions.required)
+            self._improve(self.actions.required)
+            return
         grown = sorted(grown_choices(self._base, self.parts, self.actions), key=self.cost)
         for chosen in grown:
-            if self.best is None and self._is_enough(chosen):
+            if (self.best is None or self.cost(chosen) < self.cost(self.best)) and self._is_enough(chosen, self.limits):
                 self._improve(chosen)
         if self.is_done:
             return
@@ -174,9 +180,17 @@ class Search:
         if not self.is_done:
             self._improve(self._repair(grown[0] if grown else self.actions.required, 0))
 
-    def _is_enough(self, chosen: Iterable[int]) -> bool:
-        """Return whether a choice reaches the goal, by the exact search alone."""
-        return first_violation(with_actions(self.graph, self.actions, chosen), self.parts, self.limits) is None
+    def _is_enough(self, chosen: Iterable[int], limits: Limits) -> bool:
+        """Return whether a choice is found to reach the goal, by the exact search alone and within these limits."""
+        try:
+            return first_violation(with_actions(self.graph, self.actions, chosen), self.parts, limits) is None
+        except Undecided:
+            return False
+
+    def _keeps_caps(self, chosen: Iterable[int]) -> bool:
+        """Return whether no node gains more in-neighbours than it may."""
+        gains = Counter(head for a in chosen for _, head in self.actions.items[a].arcs)
+        return all(gains[i] <= cap for i, cap in enumerate(self.actions.most or ()))
 
     def _round(self, turn: int) -> None:
         """Propose, and repair; raise :class:`Undecided` when a limit came."""

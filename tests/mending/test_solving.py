@@ -53,3 +53,16 @@ def test_a_call_for_any_choice_says_nothing_about_the_bound(monkeypatch: pytest.
     written = master.Master(graph, actions)
     assert written.solve(Limits(), None).bound == 7
     assert written.solve(Limits(), None, any_choice=True).bound == 0
+
+
+def test_what_holds_already_needs_nothing_and_the_whole_network_is_a_choice_at_once() -> None:
+    """Before any demand is written: nothing to add where the goal is reached, and of thinning the network itself."""
+    dense = nx.gnp_random_graph(60, 0.5, seed=1)
+    found = rb.mend(dense, 4)
+    assert (found.verdict.value, found.links, found.lower_bound) == ("optimal", (), 0)
+    seen = []
+    rb.thin(nx.complete_graph(7), 2, on_improvement=seen.append)
+    assert seen[0].cost == 21
+    assert seen[0].dropped == ()
+    capped = rb.mend(nx.cycle_graph(6), 2, max_in_degree=3)
+    assert all(degree <= 3 for _, degree in capped.graph.to_networkx().degree)
