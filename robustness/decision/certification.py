@@ -72,6 +72,11 @@ def certify(
     InvalidParameter
         For r = 0, and where a convention decides and no pair exists: on fewer than two nodes.
 
+    See Also
+    --------
+    robustness.check_rs_robustness : the answer alone
+    certificates.verify : the checker
+
     >>> import networkx as nx
     >>> from certificates import MalformedCertificate, verify
     >>> wheel = Digraph.from_networkx(nx.wheel_graph(5))

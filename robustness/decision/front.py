@@ -120,6 +120,12 @@ def check_rs_robustness(
     TypeError
         For an option that the algorithm does not have.
 
+    See Also
+    --------
+    robustness.determine_robustness : the greatest r, and s with it
+    robustness.certify : the same, with evidence that a small program checks
+    robustness.mend : the links that make it so
+
     Notes
     -----
     coNP-complete (Zhang, Fata, Sundaram 2015). Source of the definition: LeBlanc, Zhang, Koutsoukos, Sundaram
@@ -193,6 +199,12 @@ def determine_robustness(
         22 nodes, unless an algorithm is named or a limit came first. UNDECIDED, when a limit stopped it before r* was
         known, with the best proven r and ``bounds``. ``witness`` is a pair that violates (r* + 1, 1).
 
+    See Also
+    --------
+    robustness.check_rs_robustness : one (r,s)
+    robustness.robustness_profile : the greatest s for every r
+    robustness.tolerance : what it means for liars
+
     Notes
     -----
     The upper bound is lowered by violating pairs first, so that exact search has one r to refute.
@@ -236,6 +248,10 @@ def robustness_profile(
     Undecided
         When a limit stopped it. Its ``profile`` holds the values that are proven by then, and its ``bounds`` the
         interval of the r at which it stopped.
+
+    See Also
+    --------
+    robustness.determine_robustness : the greatest r alone, on larger networks
 
     >>> import networkx as nx
     >>> dict(robustness_profile(nx.wheel_graph(5)))

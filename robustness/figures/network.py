@@ -70,6 +70,10 @@ def draw(
     InvalidGraph, InvalidParameter
         When G is no graph of the definitions, or the answer marks nothing in it.
 
+    See Also
+    --------
+    robustness.report : a page with many pictures
+
     Notes
     -----
     Linear in the arcs, once nodes have places.

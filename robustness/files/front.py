@@ -203,6 +203,12 @@ def read_topology(
     GraphWarning
         When something was taken for granted, with the text of ``.read_as``.
 
+    See Also
+    --------
+    robustness.write_topology : the other way
+    robustness.from_edges : pairs in memory
+    robustness.from_adjacency : a matrix in memory
+
     Notes
     -----
     Linear in the size of the input (quadratic in n for matrices, which are).
@@ -326,6 +332,10 @@ def write_topology(graph: GraphLike, path: str | os.PathLike[str]) -> None:
         For a suffix that names no format, or one that is only read.
     OSError
         When the file cannot be written.
+
+    See Also
+    --------
+    robustness.read_topology : the other way
 
     >>> import networkx, tempfile, pathlib
     >>> place = pathlib.Path(tempfile.mkdtemp(), "square.json")

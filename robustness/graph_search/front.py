@@ -99,6 +99,10 @@ def find_graph(
     InvalidParameter
         For a property that does not parse, numbers of nodes below 0, or a method that cannot serve them.
 
+    See Also
+    --------
+    robustness.mend : from a network that is there
+
     >>> find_graph(6, satisfies=["3-connected"], violates=["2-robust"]).verdict.value
     'found'
     >>> find_graph(range(1, 6), satisfies=["3-robust"], violates=["min-degree>=3"]).verdict.value

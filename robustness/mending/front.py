@@ -81,6 +81,12 @@ def mend(
     InvalidGraph, InvalidParameter
         For a goal, links or costs that cannot be meant.
 
+    See Also
+    --------
+    robustness.thin : links that can be spared
+    robustness.margin : how many losses it survives
+    robustness.find_graph : a network from nothing
+
     Notes
     -----
     Adding links never destroys (r,s)-robustness, nor makes a trap or a violation, so every violation of a choice is one
@@ -137,6 +143,11 @@ def thin(
     -------
     MendResult
         ``links`` stay and ``dropped`` go. IMPOSSIBLE when G itself does not reach the goal.
+
+    See Also
+    --------
+    robustness.mend : links to add
+    robustness.margin : how many losses it survives
 
     >>> import networkx as nx
     >>> found = thin(nx.complete_graph(5), (2, 2))

@@ -120,6 +120,11 @@ def margin(
     -------
     Margin
 
+    See Also
+    --------
+    robustness.mend : links to add
+    robustness.thin : links that can be spared
+
     >>> import networkx as nx
     >>> margin(nx.complete_graph(5), 3).losses, margin(nx.wheel_graph(5), (2, 2)).losses
     (2, 1)

@@ -88,6 +88,10 @@ def report(
     InvalidParameter, UnreadableTopology
         As :func:`robustness.survey` does.
 
+    See Also
+    --------
+    robustness.survey : the rows as data
+
     >>> import networkx as nx
     >>> made = report({"wheel": nx.wheel_graph(5)}, models=["malicious"], pictures=False)
     >>> made.survey.rows[0].r, "survives 1 malicious node" in made.html

@@ -163,6 +163,11 @@ def survey(
     UnreadableTopology
         For a folder or pattern that holds no network, and a damaged journal.
 
+    See Also
+    --------
+    robustness.report : the same as a page
+    robustness.determine_robustness : one network
+
     >>> import networkx as nx
     >>> rows = survey({"wheel": nx.wheel_graph(5), "complete": nx.complete_graph(7)}, models=["delayed"])
     >>> [(row.network, row.r, row.guaranteed["delayed"]) for row in rows]

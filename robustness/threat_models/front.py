@@ -119,6 +119,12 @@ def tolerance(
     InvalidGraph, InvalidParameter
         For input the definitions do not speak about.
 
+    See Also
+    --------
+    robustness.simulate : a run with liars
+    robustness.check_rs_robustness : the property of the network alone
+    robustness.mend : links that make it survive
+
     Notes
     -----
     f = 0 is agreement without adversaries: 1-robustness, a node that reaches all others. On fewer than two nodes nobody

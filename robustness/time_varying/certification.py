@@ -64,6 +64,11 @@ def certify_joint(
     InvalidGraph, InvalidParameter
         As for the decision; also for r = 0, and where a convention decides and no pair exists: on fewer than two nodes.
 
+    See Also
+    --------
+    robustness.check_joint_robustness : the answer alone
+    robustness.certify : one network
+
     Notes
     -----
     Unlike deciding, certifying searches every distinct union for itself.

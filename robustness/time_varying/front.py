@@ -95,6 +95,12 @@ def check_joint_robustness(
     InvalidGraph, InvalidParameter
         For input the definition does not speak about.
 
+    See Also
+    --------
+    robustness.joint_curve : the fewest steps for every r
+    robustness.certify_joint : the same, with evidence
+    robustness.check_rs_robustness : one network
+
     Notes
     -----
     At most ``steps + l`` unions are decided to find the smallest l, ``steps`` for a given one; most of them without a
@@ -164,6 +170,10 @@ def joint_curve(
 
     Takes the parameters of :func:`check_joint_robustness`; raises :class:`Undecided` when a limit stopped it.
     (r,s)-robust graphs are (r-1,s)-robust, so the values grow with r, and each search starts where the last ended.
+
+    See Also
+    --------
+    robustness.check_joint_robustness : one r
 
     >>> links = TimeVaryingGraph.from_arcs(range(3), [[(0, 1)], [(1, 2)], [(2, 0)]], period=3, directed=False)
     >>> dict(joint_curve(links))
