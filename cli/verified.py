@@ -10,11 +10,16 @@ from pathlib import Path
 
 import certificates
 from certificates import MalformedCertificate, RejectedCertificate, VerifiedClaim, VerifiedToleranceClaim
+from certificates.tolerance import FORMATS as TOLERANCE_FORMATS
+from certificates.verification import FORMAT
 from robustness.errors import InternalError
 
-__all__ = ["NAME", "CheckerUnavailable", "find_checker", "verify_with"]
+__all__ = ["FORMATS", "NAME", "CheckerUnavailable", "find_checker", "verify_with"]
 
 NAME = "robustness-verified"
+
+#: The formats of certificates that it knows.
+FORMATS = (FORMAT, *TOLERANCE_FORMATS)
 
 _CLAIM = re.compile(
     r"verified: the graph with (?P<nodes>\d+) nodes, (?P<arcs>\d+) arcs and SHA-256 (?P<sha256>[0-9a-f]{64}) "

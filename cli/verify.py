@@ -142,8 +142,13 @@ def _tell_confirmation(
 
 def _verified_formally(source: str, certificate: bytes) -> Claim:
     """Return what the checker that is proved correct says that the certificate proves about the graph."""
-    from .verified import NAME, CheckerUnavailable, find_checker, verify_with
+    from certificates import MalformedCertificate
+    from certificates.questions import format_of
 
+    from .verified import FORMATS, NAME, CheckerUnavailable, find_checker, verify_with
+
+    if (form := format_of(certificate)) not in FORMATS:
+        raise MalformedCertificate(f"certificates of the format {form} are for --checker python only")
     found = find_checker()
     if found is None:
         raise click.UsageError(f"no {NAME} on the PATH: 'make formal' builds it where Coq and OCaml are installed.")

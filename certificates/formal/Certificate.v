@@ -90,7 +90,7 @@ Definition prove (g : graph) (robust_claim : bool) (r s : nat) (v : json) (body 
       end
     else
       match object_with ["kind"] v with
-      | None => Malformed "evidence of this kind is none, or has other keys"
+      | None => Malformed "evidence of this kind is none, or none that is checked here, or has other keys"
       | Some _ =>
         match direct n heard hearers r s kind body with
         | None => done (if is_text "degree" kind then "degree" else "refutation")

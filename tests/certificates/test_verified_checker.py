@@ -182,6 +182,15 @@ def test_what_malicious_nodes_can_do(
     assert outcome.exit_code == 0, outcome.output
 
 
+@pytest.mark.parametrize("form", ["robustness/joint-certificate/1", "robustness/mending-certificate/1"])
+def test_a_format_that_it_does_not_know_is_told(form: str, tmp_path: Path) -> None:
+    (tmp_path / "c.cert").write_bytes(json.dumps({"format": form}).encode() + b"\n")
+    paths = [str(tmp_path / "wheel.json"), str(tmp_path / "c.cert")]
+    outcome = CliRunner().invoke(robustness, ["verify", *paths, "--checker", "verified"])
+    assert outcome.exit_code == 3
+    assert "--checker python" in outcome.stderr
+
+
 def test_the_proofs_are_closed(checker: Path) -> None:
     """``Print Assumptions`` of every theorem answers that nothing is assumed; ``make formal`` keeps the answer."""
     asked = len(re.findall(r"^Print Assumptions", (FORMAL / "Assumptions.v").read_text(), re.MULTILINE))
