@@ -74,6 +74,10 @@ def command(
     if as_json:
         is_complete = not is_interrupted and not found.missing
         console.document(SCHEMA, found.as_dict() | {"is_complete": is_complete})
+    elif output is None and console.is_quiet and kind == "table":
+        from robustness.reporting.wording import headline
+
+        console.result(headline(found, networks.gate))
     elif output is None:
         console.result(content.rstrip("\n"))
     ctx.exit(exit_code(console, found, is_interrupted, written))

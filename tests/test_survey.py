@@ -259,3 +259,10 @@ def test_links_that_mend_are_told_where_asked() -> None:
     for wrong in (-1.0, float("nan"), float("inf")):
         with pytest.raises(rb.InvalidParameter, match="mending is a number of seconds"):
             rb.survey(networks, mending=wrong)
+
+
+def test_quiet_is_one_line(folder: Path) -> None:
+    quiet = run(folder, "--no-models", "-r", 1, "-q")
+    assert quiet.stdout.count("\n") == 1
+    assert "networks" in quiet.stdout
+    assert run(folder, "--no-models", "--as", "csv", "-q").stdout.startswith("network,")
