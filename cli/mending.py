@@ -205,6 +205,10 @@ def answer(
     console: Console, query: Query, work: Callable[[ProgressLine, Callable[[MendResult], None]], MendResult]
 ) -> tuple[MendResult | None, bool]:
     """Return the answer and whether it was interrupted: then it is the best that was known."""
+    from robustness.mending.master import load_solver
+
+    if query.timeout is not None:
+        load_solver()
     latest: list[MendResult] = []
     with ProgressLine(console) as line:
         try:

@@ -13,6 +13,7 @@ from robustness.mending.actions import Actions, CostLike, Link, actions_for
 from robustness.mending.demands import sets_of
 from robustness.mending.goal import Goal, Part, goals_of, parts_of
 from robustness.mending.hitting_set import Search, with_actions
+from robustness.mending.master import load_solver
 from robustness.mending.results import Demand, MendResult, MendVerdict, Problem
 from robustness.natural_order import natural_key
 from robustness.traps.question import Sets
@@ -98,6 +99,9 @@ def mend(
     >>> found.verdict.value, found.cost, found.lower_bound
     ('optimal', 2, 2)
     """
+    if time_limit is not None:
+        load_solver()
+    limits = Limits.of(time_limit, jobs, seed, progress)
     graph = as_digraph(G)
     goals = goals_of(goal)
     arcs_only = graph.directed if one_way is None else bool(one_way)
@@ -111,7 +115,6 @@ def mend(
         one_way=arcs_only,
         budget=budget,
     )
-    limits = Limits.of(time_limit, jobs, seed, progress)
     return _answer(graph, goals, actions, limits, arcs_only, on_improvement, any_choice=any_choice)
 
 
@@ -154,6 +157,9 @@ def thin(
     >>> found.verdict.value, found.cost, len(found.dropped)
     ('optimal', 7, 3)
     """
+    if time_limit is not None:
+        load_solver()
+    limits = Limits.of(time_limit, jobs, seed, progress)
     graph = as_digraph(G)
     goals = goals_of(goal)
     labels = graph.labels
@@ -164,7 +170,6 @@ def thin(
         if tuple(link) not in own and tuple(reversed(link)) not in own:
             raise InvalidParameter(f"the link {link!r} that is to stay is not there: leave it out")
     actions = actions_for(empty, own, cost, forbid=(), require=kept, max_in_degree=None, one_way=graph.directed)
-    limits = Limits.of(time_limit, jobs, seed, progress)
 
     def with_dropped(result: MendResult) -> MendResult:
         if result.cost is None:
@@ -185,6 +190,10 @@ def thin(
             on_improvement(with_dropped(result))
 
     return with_dropped(_answer(empty, goals, actions, limits, graph.directed, tell))
+
+
+#: Seconds that are kept back for the result, and for each action.
+_TELLING, _TELLING_EACH = 0.05, 2e-5
 
 
 def links_within(positions: Mapping[Hashable, Sequence[float]], reach: float) -> list[Link]:
@@ -219,7 +228,10 @@ def _answer(
         if on_improvement is not None:
             on_improvement(_result(search, goals, one_way, time.monotonic() - started))
 
-    search = Search(graph, actions, parts, limits, told, any_choice)
+    # What is found has to be told within the limit as well.
+    kept_back = min(limits.seconds_left() / 5, _TELLING + _TELLING_EACH * len(actions.items))
+    in_time = limits if limits.deadline is None else replace(limits, deadline=limits.deadline - kept_back)
+    search = Search(graph, actions, parts, in_time, told, any_choice)
     search.run()
     return _result(search, goals, one_way, time.monotonic() - started)
 

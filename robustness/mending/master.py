@@ -41,10 +41,15 @@ from robustness.mending.goal import Part
 from robustness.mending.spreading import Cover, lacking, starts_of
 from robustness.solver_calls import solve_within
 
-__all__ = ["Master", "Proposal"]
+__all__ = ["Master", "Proposal", "load_solver"]
 
 #: Multiples beyond this are not worth an inequality.
 _LARGEST_MULTIPLE = 5040
+
+
+def load_solver() -> None:
+    """Import the solver now, so that no limit is spent on it."""
+    from ortools.sat.python import cp_model  # noqa: F401
 
 
 class Proposal(NamedTuple):
