@@ -1,6 +1,7 @@
 """Adversaries that search: what they leave of the spread on every small network that only the exact condition promises.
 
-``python -m robustness.paper.adversary_search docs`` makes docs/searching-adversaries.md anew, in some minutes.
+``python -m robustness.paper.adversary_search docs`` makes docs/searching-adversaries.jsonl anew, a line for each
+network, and the page docs/searching-adversaries.md, in five minutes.
 
 A *policy* repeats after a few steps. It says for every phase whom each liar shows what (the lowest place of the normal
 vehicles, the highest, or the receiver's own), how old what everybody hears is, and who updates. It is found by hill
@@ -12,9 +13,10 @@ written out again, as docs/theorems.md has it (H1 to H6).
 
 from __future__ import annotations
 
+import json
 import sys
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass
 from itertools import combinations
 from pathlib import Path
 from typing import Any
@@ -29,7 +31,19 @@ from robustness.digraph import Digraph, as_digraph
 from robustness.gain_region import gain_region, hull_velocity_factor
 from robustness.traps import find_trap
 
-__all__ = ["CONTROLS", "FLEETS", "Vehicles", "liars", "page", "promised", "searched", "spread_left"]
+__all__ = [
+    "CONTROLS",
+    "FLEETS",
+    "Row",
+    "Vehicles",
+    "attacked",
+    "left_of_the_worst",
+    "liars",
+    "page",
+    "promised",
+    "rows",
+    "spread_left",
+]
 
 Numbers = npt.NDArray[Any]
 
@@ -93,9 +107,16 @@ def liars(graph: Digraph, f: int, *, local: bool) -> Iterator[frozenset[int]]:
 
 
 def spread_left(
-    graph: Digraph, f: int, bad: Iterable[int], vehicles: Vehicles = Vehicles(), *, seed: int = 0, climb: int = CLIMB
+    graph: Digraph,
+    f: int,
+    bad: Iterable[int],
+    vehicles: Vehicles = Vehicles(),
+    *,
+    seed: int = 0,
+    climb: int = CLIMB,
+    steps: int = STEPS,
 ) -> float:
-    """Return the largest spread that the search leaves after ``STEPS`` steps, of 1 at the start.
+    """Return the largest spread that the search leaves after so many steps, of 1 at the start.
 
     Starts at rest, the normal vehicles at 0, at 1 or between. The spread is the length of the hull of all p and
     p + c q.
@@ -106,12 +127,12 @@ def spread_left(
     free = np.flatnonzero(normal)
     start[:, free[0]], start[:, free[-1]] = 0.0, 1.0
     best = _first_policies(rng, graph.n, vehicles, start)
-    left = _run(hears, normal, f, vehicles, best, start)
+    left = _run(hears, normal, f, vehicles, best, start, steps)
     for _ in range(climb):
         other = _changed(rng, best, vehicles)
         moved = np.where(rng.random(start.shape) < 1 / graph.n, rng.choice([0.0, 0.5, 1.0], size=start.shape), start)
         moved[:, free[0]], moved[:, free[-1]] = 0.0, 1.0
-        reached = _run(hears, normal, f, vehicles, other, moved)
+        reached = _run(hears, normal, f, vehicles, other, moved, steps)
         better = reached >= left
         start[better], left[better] = moved[better], reached[better]
         for kept, tried in zip(best.parts(), other.parts(), strict=True):
@@ -157,15 +178,23 @@ def _changed(rng: np.random.Generator, policies: _Policies, vehicles: Vehicles) 
     return _Policies(shown, late, _lawful(policies.update ^ (rng.random(shape[:3]) < rate), vehicles.gap))
 
 
-def _run(hears: Numbers, normal: Numbers, f: int, vehicles: Vehicles, policies: _Policies, start: Numbers) -> Numbers:
-    """Return the spread after ``STEPS`` steps of every policy, shape ``(B,)``."""
+def _run(
+    hears: Numbers,
+    normal: Numbers,
+    f: int,
+    vehicles: Vehicles,
+    policies: _Policies,
+    start: Numbers,
+    steps: int = STEPS,
+) -> Numbers:
+    """Return the spread after so many steps of every policy, shape ``(B,)``."""
     runs, n = start.shape
     p, q = start.copy(), np.zeros_like(start)
     weight = vehicles.s / np.maximum(hears.sum(axis=1) - f, 1)
     past = np.repeat(p[None], vehicles.delay + 1, axis=0)
     held, kept = np.zeros((runs, n, n)), np.zeros((runs, n, n), bool)
     at = np.arange(runs)[:, None, None], np.arange(n)
-    for step in range(STEPS):
+    for step in range(steps):
         phase = step % PHASES
         low, high, _ = _ends(p, q, normal, vehicles)
         shown = policies.shown[:, phase]
@@ -214,34 +243,73 @@ CONTROLS: tuple[tuple[str, Digraph, int, frozenset[int], Vehicles], ...] = (
 )
 
 
-def searched(graphs: Iterable[Digraph], f: int) -> tuple[int, int, float]:
-    """Return how many graphs and sets of liars were attacked, and the largest spread left.
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One network under attack: how many sets of liars, and the largest spread that each fleet was left with."""
 
-    Local sets of liars are played where there is no local trap; the fleets take turns.
-    """
-    count, sets, worst = 0, 0, 0.0
-    for graph in graphs:
-        count += 1
-        for bad in liars(graph, f, local=find_trap(graph, f, local=True).exists is False):
-            worst = max(worst, spread_left(graph, f, bad, FLEETS[sets % len(FLEETS)], seed=sets))
-            sets += 1
-    return count, sets, worst
+    directed: bool
+    n: int
+    f: int
+    arcs: tuple[tuple[int, int], ...]
+    #: Whether sets of liars were local; else they were f in all.
+    local: bool
+    sets: int
+    left: tuple[float, ...]
+
+    @classmethod
+    def of(cls, document: dict[str, Any]) -> Row:
+        """Return the row of a line of the table."""
+        arcs = tuple((u, v) for u, v in document["arcs"])
+        return cls(**{**document, "arcs": arcs, "left": tuple(document["left"])})
 
 
-def page(largest: int = 7) -> str:
+def attacked(graph: Digraph, f: int) -> Row:
+    """Attack every set of liars in every fleet; local sets are played where there is no local trap."""
+    local = find_trap(graph, f, local=True).exists is False
+    sets = list(liars(graph, f, local=local))
+    left = [max(spread_left(graph, f, bad, fleet, seed=k) for k, bad in enumerate(sets)) for fleet in FLEETS]
+    arcs = tuple((int(u), int(v)) for u, v in graph.arcs())
+    return Row(graph.directed, graph.n, f, arcs, local, len(sets), tuple(float(f"{each:.3g}") for each in left))
+
+
+def rows(largest: int = 7) -> Iterator[Row]:
+    """Yield the table: connected graphs with up to so many nodes, digraphs with up to four."""
+    for directed in (False, True):
+        for f in (1, 2):
+            for graph in promised(min(largest, 4) if directed else largest, f, directed=directed):
+                yield attacked(graph, f)
+
+
+def left_of_the_worst(table: Sequence[Row], steps: int) -> float:
+    """Return what is left after so many steps where most was left: the same network, fleet and sets of liars."""
+    row = max(table, key=lambda row: max(row.left))
+    graph, fleet = Digraph(range(row.n), row.arcs, directed=row.directed), FLEETS[row.left.index(max(row.left))]
+    every = enumerate(liars(graph, row.f, local=row.local))
+    return max(spread_left(graph, row.f, bad, fleet, seed=k, steps=steps) for k, bad in every)
+
+
+def page(table: Sequence[Row]) -> str:
     """Return the page of the documentation as Markdown."""
     lines = []
-    for name, directed, most in (("graphs", False, largest), ("digraphs", True, min(largest, 4))):
-        for f in (1, 2):
-            graphs = list(promised(most, f, directed=directed))
-            for n in sorted({graph.n for graph in graphs}):
-                told = searched([graph for graph in graphs if graph.n == n], f)
-                lines.append(f"| {name} | {n} | {f} | {told[0]} | {told[1]} | {told[2]:.3f} |")
+    for directed, f, n in sorted({(row.directed, row.f, row.n) for row in table}):
+        group = [row for row in table if (row.directed, row.f, row.n) == (directed, f, n)]
+        left = " | ".join(f"{max(each):.1e}" for each in zip(*(row.left for row in group), strict=True))
+        kind, sets = "digraphs" if directed else "graphs", sum(row.sets for row in group)
+        lines.append(f"| {kind} | {n} | {f} | {len(group)} | {sets} | {left} |")
     controls = [
         f"| {name} | {spread_left(graph, f, bad, vehicles, climb=10 * CLIMB):.3f} |"
         for name, graph, f, bad, vehicles in CONTROLS
     ]
-    return _PAGE.format(rows="\n".join(lines), controls="\n".join(controls), steps=STEPS, phases=PHASES)
+    fleets = " | ".join(f"s = {each.s:g}, a = {each.a:g}, b = {each.delay}, g = {each.gap}" for each in FLEETS)
+    return _PAGE.format(
+        fleets=fleets,
+        rule="|---" * (5 + len(FLEETS)) + "|",
+        rows="\n".join(lines),
+        controls="\n".join(controls),
+        steps=STEPS,
+        longer=", ".join(f"{left_of_the_worst(table, k * STEPS):.2f} after {k * STEPS}" for k in (2, 4)),
+        phases=PHASES,
+    )
 
 
 _PAGE = """\
@@ -261,13 +329,17 @@ and the start; all of it periodic with {phases} steps, found by hill climbing fr
 greedy ones, which push every receiver to the end that it is nearer to. Gains lie inside the region, at both
 of its ends, and next to $s = 1$. The motion is written out anew and shares nothing with the simulator.
 
-*Left* is the largest spread (the length of the hull of all $p$ and $p + cq$) after {steps} steps, of 1 at the start:
+The largest spread (the length of the hull of all $p$ and $p + cq$) after {steps} steps, of 1 at the start, for
+vehicles with $s = \\sigma T^2$, $a = \\alpha T$, delays up to $b$ and updates up to $g$ steps apart:
 
-| | n | f | networks | sets of liars | left |
-|---|---|---|---|---|---|
+| | n | f | networks | sets of liars | {fleets} |
+{rule}
 {rows}
 
-The same search where it must succeed; most of the spread is left, or it grows:
+Where most is left it falls by about the same factor in the same time: {longer}, with a search for these lengths.
+
+`searching-adversaries.jsonl` beside this page has a line for each network; `tests/tolerance/test_adversary_search.py`
+attacks some of them anew. The same search where it must succeed; most of the spread is left, or it grows:
 
 | control | left |
 |---|---|
@@ -276,4 +348,7 @@ The same search where it must succeed; most of the spread is left, or it grows:
 
 
 if __name__ == "__main__":
-    (Path(sys.argv[1]) / "searching-adversaries.md").write_text(page(), encoding="utf-8")
+    folder, table = Path(sys.argv[1]), list(rows())
+    text = "".join(json.dumps(asdict(row)) + "\n" for row in table)
+    (folder / "searching-adversaries.jsonl").write_text(text, encoding="utf-8")
+    (folder / "searching-adversaries.md").write_text(page(table), encoding="utf-8")
