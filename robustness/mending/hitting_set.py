@@ -21,6 +21,7 @@ from robustness.errors import InternalError, Undecided
 from robustness.limits import Limits, Progress
 from robustness.mending.actions import Actions
 from robustness.mending.construction import grown_choices
+from robustness.mending.covers import Cover, lacking, rigid_components
 from robustness.mending.demands import (
     Side,
     Unit,
@@ -37,7 +38,6 @@ from robustness.mending.goal import Part
 from robustness.mending.growing import every_pair, grown_sides, shrunk
 from robustness.mending.master import Master, Proposal
 from robustness.mending.oracle import first_violation
-from robustness.mending.spreading import Cover, lacking, rigid_components
 from robustness.traps.question import Sets
 
 __all__ = ["Search", "with_actions"]
@@ -96,7 +96,7 @@ class Search:
     rows : list of pairs of sides
         The demands that the master problem holds.
     covers : list of (Part, Cover)
-        The covers behind its other rows (:mod:`robustness.mending.spreading`).
+        The covers behind its other rows (:mod:`robustness.mending.covers`).
     """
 
     graph: Digraph

@@ -16,7 +16,7 @@ For s = 1 the worth is 0 or 1, and one more inequality helps the relaxation: som
 full, so ``sum over u, a of (L / m_u) x_a >= L w_S`` for a common multiple L of what the units miss. Of sides that are
 disjoint in pairs all but one are worth something: the solver finds this by itself, because sides are shared by pairs.
 
-The last rows are those of :mod:`robustness.mending.spreading`: ``z``, one for each condition with r = 2,
+The last rows are those of :mod:`robustness.mending.covers`: ``z``, one for each condition with r = 2,
 says that no two linked nodes take everything in.
 
 Every choice that reaches the goal fulfils all of this, whichever pairs are known; so the minimum is a lower bound on
@@ -36,9 +36,9 @@ from robustness.digraph import Digraph
 from robustness.errors import Undecided
 from robustness.limits import UNBOUNDED, Limits
 from robustness.mending.actions import Actions
+from robustness.mending.covers import Cover, lacking, starts_of
 from robustness.mending.demands import Side, Unit, masks_of, units, unlocalizers
 from robustness.mending.goal import Part
-from robustness.mending.spreading import Cover, lacking, starts_of
 from robustness.solver_calls import solve_within
 
 __all__ = ["Master", "Proposal", "load_solver"]

@@ -63,7 +63,7 @@ class Problem:
     pairs : tuple of (Part, Sets)
         Violations of ``graph`` from which the bound follows,
     covers : tuple of (Part, masks of nodes)
-        and covers of its links (:mod:`robustness.mending.spreading`).
+        and covers of its links (:mod:`robustness.mending.covers`).
     """
 
     graph: Digraph

@@ -14,8 +14,8 @@ from robustness.errors import Undecided
 from robustness.limits import Limits
 from robustness.mending import MendVerdict, losses, master
 from robustness.mending.actions import actions_for
+from robustness.mending.covers import rigid_components
 from robustness.mending.goal import Part
-from robustness.mending.spreading import rigid_components
 from robustness.solver_calls import Outcome
 
 

@@ -10,9 +10,9 @@ import pytest
 from networkx.generators.atlas import graph_atlas_g
 
 import robustness as rb
+from robustness.mending.covers import lacking, rigid_components, room, starts_of
 from robustness.mending.demands import Side, bits, worth
 from robustness.mending.goal import Part
-from robustness.mending.spreading import lacking, rigid_components, room, starts_of
 
 PRIME = (1 << 31) - 1
 
