@@ -196,11 +196,11 @@ class Search:
         """Propose, and repair; raise :class:`Undecided` when a limit came."""
         if self._master is None:
             raise InternalError("a round without a master problem: please report")
-        any_choice = self.best is not None and (turn % _SELDOM != 1 or self.cost(self.best) == self.bound + 1)
+        effort = self._effort if self.graph.n > _FEW else None  # the demands of few nodes are complete: no more rounds
+        is_one_off = self.best is not None and self.cost(self.best) == self.bound + 1
+        any_choice = self.best is not None and self.graph.n > _FEW and (turn % _SELDOM != 1 or is_one_off)
         within = None if self.best is None else self.cost(self.best) - 1
-        proposal = self._master.solve(
-            self.limits.share(0.7), self.best, self._effort, within=within, any_choice=any_choice
-        )
+        proposal = self._master.solve(self.limits.share(0.7), self.best, effort, within=within, any_choice=any_choice)
         self._believe(proposal)
         if proposal.chosen is None:
             self._effort *= _GROWTH

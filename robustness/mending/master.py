@@ -94,9 +94,8 @@ class Master:
         self._dearest = sum(item.cost for item in actions.items)
         if actions.budget is not None:
             self._dearest = min(self._dearest, actions.budget)
-        #: What a choice may cost: an interval that every call sets anew.
-        self._most = self._model.new_int_var(0, self._dearest, "")
-        self._model.add(self._cost <= self._most)
+        #: The row of what a choice may cost, which every call sets anew.
+        self._ceiling = self._model.add(self._cost <= self._dearest) if actions.items else None
 
     def add(self, first: Side, second: Side) -> None:
         """Add one demand: two sides that fit."""
@@ -137,7 +136,8 @@ class Master:
         self._model.clear_hints()  # type: ignore[no-untyped-call]
         self._model.clear_objective()  # type: ignore[no-untyped-call]
         most = self._dearest if within is None else min(within, self._dearest)
-        self._model.proto.variables[self._most.index].domain[1] = most
+        if self._ceiling is not None:
+            self._ceiling.proto.linear.domain[1] = most
         if not any_choice:
             self._model.minimize(self._cost)
         if hint is not None:
