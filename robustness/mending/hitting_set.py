@@ -53,7 +53,7 @@ _MOST_PARTNERS = 8
 
 #: The solver's units of effort for the first bound, about a second, and for a call in the first round; in the rounds it
 #: grows by a factor whenever a call did not finish.
-_FIRST_EFFORT, _EFFORT, _GROWTH = 1.0, 4.0, 1.3
+_FIRST_EFFORT, _EFFORT, _GROWTH, _GROWTH_ON_FEW = 1.0, 4.0, 1.3, 1.5
 
 #: A proposal is repaired in so many ways, divided by the square of the number of nodes, and in one at least.
 _REPAIRED = 2000
@@ -196,14 +196,16 @@ class Search:
         """Propose, and repair; raise :class:`Undecided` when a limit came."""
         if self._master is None:
             raise InternalError("a round without a master problem: please report")
-        effort = self._effort if self.graph.n > _FEW else None  # the demands of few nodes are complete: no more rounds
+        is_few = self.graph.n <= _FEW  # then all demands are there, and the two ways to ask race each other
         is_one_off = self.best is not None and self.cost(self.best) == self.bound + 1
-        any_choice = self.best is not None and self.graph.n > _FEW and (turn % _SELDOM != 1 or is_one_off)
+        any_choice = self.best is not None and (turn % 2 == 1 if is_few else turn % _SELDOM != 1 or is_one_off)
         within = None if self.best is None else self.cost(self.best) - 1
-        proposal = self._master.solve(self.limits.share(0.7), self.best, effort, within=within, any_choice=any_choice)
+        proposal = self._master.solve(
+            self.limits.share(0.7), self.best, self._effort, within=within, any_choice=any_choice
+        )
         self._believe(proposal)
         if proposal.chosen is None:
-            self._effort *= _GROWTH
+            self._effort *= _GROWTH_ON_FEW if is_few else _GROWTH
         if proposal.chosen is not None and not self.is_done:
             known = len(self.rows), len(self.covers)
             heard = self._heard(proposal.chosen)
