@@ -195,6 +195,7 @@ FORGERIES: list[tuple[Callable[[dict[str, Any]], object], type[CertificateError]
         "does not prove that the goal",
     ),
     (put("claim", "parts", 0, "s", value=5), RejectedCertificate, "does not"),
+    (put("claim", "parts", 0, "s", value=6), MalformedCertificate, "s of a part lies in"),
     (put("claim", "parts", 0, "r", value=0), MalformedCertificate, "at least 1"),
     (put("claim", "parts", 0, "f", value=0), MalformedCertificate, "keys r s"),
     (put("claim", "parts", value=[{"f": 1, "faces": 3, "bound": "total"}]), MalformedCertificate, "faces is 1 or 2"),
