@@ -17,10 +17,13 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import TypeVar
 
-__all__ = ["GRACE", "Overrun", "end_process", "interruptibly"]
+__all__ = ["FAR_GRACE", "GRACE", "Overrun", "end_process", "interruptibly"]
 
 #: Seconds that work may take beyond its time limit to come back with what it knows.
 GRACE = 0.5
+
+#: The same for work that other machines do, whose last words have to be collected.
+FAR_GRACE = 5.0
 
 _Result = TypeVar("_Result")
 
@@ -35,14 +38,19 @@ class Overrun(Exception):
 
 
 def interruptibly(
-    work: Callable[[], _Result], limit: float | None = None, while_waiting: Callable[[], None] = lambda: None
+    work: Callable[[], _Result],
+    limit: float | None = None,
+    while_waiting: Callable[[], None] = lambda: None,
+    *,
+    is_far: bool = False,
 ) -> _Result:
     """Return what ``work()`` returns, or raise what it raises; Ctrl-C raises KeyboardInterrupt here at once.
 
-    When ``limit`` seconds and the :data:`GRACE` are over, :class:`Overrun` is raised. In both cases the work goes on
-    in the background until :func:`end_process`, so it must not print. ``while_waiting`` is called twice a second.
+    When ``limit`` seconds and the :data:`GRACE` (:data:`FAR_GRACE` when ``is_far``) are over, :class:`Overrun` is
+    raised. In both cases the work goes on in the background until :func:`end_process`, so it must not print.
+    ``while_waiting`` is called twice a second.
     """
-    deadline = math.inf if limit is None else time.monotonic() + limit + GRACE
+    deadline = math.inf if limit is None else time.monotonic() + limit + (FAR_GRACE if is_far else GRACE)
     results: list[_Result] = []
     problems: list[BaseException] = []
     is_done = threading.Event()

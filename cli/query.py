@@ -85,7 +85,8 @@ class Query:
 
     def wait_for(self, work: Callable[[], _Result], line: ProgressLine | None = None) -> _Result:
         """Return what ``work()`` returns; Ctrl-C and the time limit end the wait, as ``interruptibly`` says."""
-        return interruptibly(work, self.timeout) if line is None else interruptibly(work, self.timeout, line.tick)
+        tick = (lambda: None) if line is None else line.tick
+        return interruptibly(work, self.timeout, tick, is_far=self.executor is not None)
 
 
 def speaking(command: _Command) -> _Command:

@@ -164,10 +164,12 @@ _TIMES = re.compile(
 
 
 def test_no_file_has_a_number_of_seconds_that_decides() -> None:
-    """Seconds that say how often to look at the clock, how long after the user's limit, or when a worker is lost."""
+    """Seconds that say how often to look at the clock, how long before or after the user's limit, or when a worker is lost."""
     allowed = {
         "_STEP",
         "GRACE",
+        "FAR_GRACE",
+        "_TELLING, _TELLING_EACH",
         "_GRACE",
         "_ESTIMATE_SECONDS",
         "_FETCH",

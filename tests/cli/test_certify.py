@@ -100,7 +100,7 @@ def test_undecided_writes_nothing(as_json: bool, target: Path) -> None:
 
 
 def test_an_overrun_is_undecided_and_writes_nothing(monkeypatch: pytest.MonkeyPatch, target: Path) -> None:
-    def overrun(*_: object) -> None:
+    def overrun(*_: object, **__: object) -> None:
         raise Overrun
 
     monkeypatch.setattr("cli.query.interruptibly", overrun)

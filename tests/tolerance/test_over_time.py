@@ -264,7 +264,7 @@ class TestCommand:
             assert verify_tolerance(read["graph.json"], read[f"{model}-refuted-1.cert"]).verdict == "apart"
 
     def test_work_that_overruns_speaks_of_the_models_over_time_alone(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        def overrun(*_: object) -> None:
+        def overrun(*_: object, **__: object) -> None:
             raise Overrun
 
         monkeypatch.setattr("cli.query.interruptibly", overrun)
