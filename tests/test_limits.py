@@ -164,7 +164,7 @@ _TIMES = re.compile(
 
 
 def test_no_file_has_a_number_of_seconds_that_decides() -> None:
-    """Seconds that say how often to look at the clock, how long before or after the user's limit, or when a worker is lost."""
+    """Seconds that say how often to look at the clock, how near the user's limit, or when a worker is lost."""
     allowed = {
         "_STEP",
         "GRACE",
