@@ -68,11 +68,11 @@ class VerifiedMendingClaim:
         reached = ""
         if self.cost is not None:
             reached = f"reaches the goal, {self.goal}, with {self.links} links of cost {self.cost}, and "
-        covers = f" and {self.covers} covers" if self.covers else ""
+        covers = f", and {self.covers} covers whose demands it has to meet" if self.covers else ""
         rest = "no choice does" if self.least is None else f"this costs at least {self.least}"
         return (
-            f"{graph} {reached}has {self.violations} violations{covers} that every choice of links that reaches the "
-            f"goal, {self.goal}, has to break; that {rest} is left to a solver"
+            f"{graph} {reached}has {self.violations} violations that every choice of links that reaches the goal, "
+            f"{self.goal}, has to break{covers}; that {rest} is left to a solver"
         )
 
 

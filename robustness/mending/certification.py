@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable
 from typing import Any
 
+from certificates.errors import RejectedCertificate
 from certificates.mending import FORMAT, verify_mending
 from robustness.decision.certification import certify
 from robustness.digraph import Digraph
@@ -112,7 +113,10 @@ def _encoded(problem: Problem, proofs: list[bytes]) -> bytes:
         "lengths": [len(proof) for proof in proofs],
     }  # fmt: skip
     data = json.dumps(header, separators=(",", ":")).encode("ascii") + b"\n" + b"".join(proofs)
-    proven = verify_mending(problem.graph.canonical_bytes(), data)
+    try:
+        proven = verify_mending(problem.graph.canonical_bytes(), data)
+    except RejectedCertificate as problem_found:
+        raise InternalError(f"the kernel rejects what was found ({problem_found}): please report") from problem_found
     known = (cost, problem.least, len(problem.pairs), len(problem.covers))
     if (proven.cost, proven.least, proven.violations, proven.covers) != known:
         raise InternalError(f"the certificate proves {proven}, which was not the claim: please report")

@@ -4,7 +4,7 @@ A set U *takes in* a node that hears at least r of it, and goes on with that nod
 V_1, ..., V_k such that every arc of the network before mending lies inside one of them, and the *room* of a set of m
 nodes is ``0 + 1 + ... `` of m terms none of which exceeds r: ``rm - r(r+1)/2`` for m >= r.
 
-Lemma (spreading). Let U be a set of at least r nodes inside one set of the cover. A choice that reaches
+Lemma (spreading). Let r >= 1, and U a set of at least r nodes inside one set of the cover. A choice that reaches
 (r,s)-robustness makes U worth s (:mod:`robustness.mending.demands`), or at least
 
     room(V) - room(V_1) - ... - room(V_k)
@@ -14,13 +14,14 @@ of its links bring an arc that lies inside no set of the cover.
 *Proof.* Let W be all that U takes in, in the network after mending. If W is not everything, no node outside W hears r
 nodes of W: the side V - W is worth 0, U is disjoint from it, so U is worth s. If W is everything, order the nodes,
 those of U first, then as they were taken in, and let F be, for every node outside U, r arcs from nodes before it. An
-undirected link brings at most one arc of F. The nodes of V_i outside U have at most min(r, place in V_i) arcs of F
-inside V_i each, together at most room(V_i) - room(V_i and U); and F has r (n - |U|) = room(V) - room(U) arcs. One V_i
-contains U. So at least the difference lies inside no V_i, and these arcs are new. ∎
+undirected link brings at most one arc of F. Each node of V_i outside U has at most min(r, number of nodes of V_i before
+it) arcs of F inside V_i; the nodes of V_i in U come first, so together these are at most room(V_i) - room(V_i and U).
+And F has r (n - |U|) = room(V) - room(U) arcs. One V_i contains U. So at least the difference lies inside no V_i; these
+arcs are new, so each is brought by a link of its own. ∎
 
 For r = 2 the best cover is known: the rigid components of the plane framework, since the rooms 2m - 3 are Laman's
 count. They are found by the pebble game of Lee and Streinu (2008). So a (2,2)-robust network in which some node hears
-only two is rigid in the plane; of those in which all hear three some are not, from 14 nodes on or earlier.
+only two is rigid in the plane; of those in which all hear three some are not: there is one of 14 nodes with 24 links.
 """
 
 from __future__ import annotations

@@ -145,8 +145,7 @@ class Search:
             self.is_impossible = self.witness is not None
             if self.is_impossible:
                 return
-            if self._keeps_caps(everything):
-                self._improve(everything)
+            self._improve(everything)
             self._start()
             turn = 1
             while not self.is_done:
@@ -259,7 +258,7 @@ class Search:
 
     def _improve(self, chosen: frozenset[int] | None) -> None:
         budget = self.actions.budget
-        if chosen is None or (budget is not None and self.cost(chosen) > budget):
+        if chosen is None or (budget is not None and self.cost(chosen) > budget) or not self._keeps_caps(chosen):
             return
         if self.best is None or self.cost(chosen) < self.cost(self.best):
             self.best = chosen
@@ -358,7 +357,7 @@ class Search:
             if missing <= 0:
                 continue
             supplies = [a for a in self._suppliers(unit) if a not in chosen and self._is_free(a, heard)]
-            if len(supplies) >= missing:
+            if min(len(supplies), self._room(unit.node, heard)) >= missing:
                 supplies.sort(key=lambda a: (self.actions.items[a].cost - gains.get(a, 0.0), rng.random()))
                 taken = supplies[:missing]
                 price = sum(self.actions.items[a].cost - gains.get(a, 0.0) for a in taken)
@@ -391,12 +390,13 @@ class Search:
             for a, item in enumerate(self.actions.items)
         }
 
-    def _is_free(self, action: int, heard: Sequence[int]) -> bool:
+    def _room(self, node: int, heard: Sequence[int]) -> int:
+        """Return how many further in-neighbours a node may gain."""
         most = self.actions.most
-        if most is None:
-            return True
-        arcs = self.actions.items[action].arcs
-        return all((heard[head] & ~self._base[head]).bit_count() < most[head] for _, head in arcs)
+        return len(heard) if most is None else most[node] - (heard[node] & ~self._base[node]).bit_count()
+
+    def _is_free(self, action: int, heard: Sequence[int]) -> bool:
+        return all(self._room(head, heard) > 0 for _, head in self.actions.items[action].arcs)
 
     def _reduced(self, chosen: frozenset[int], rng: random.Random) -> frozenset[int]:
         """Return the choice without what is superfluous: no single action can go. Several orders are tried."""

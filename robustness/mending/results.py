@@ -153,7 +153,9 @@ class MendResult(Shown):
     def evidence(self) -> list[tuple[str, str]]:
         """Return the links and the bound, as rows of a name and a text."""
         links = ", ".join(f"{u!r} - {v!r}" for u, v in self.links)
-        return [("links", links), ("lower bound", f"{self.lower_bound}, from {len(self.demands)} violations")]
+        covers = len(self.problem.covers) if self.problem is not None else 0
+        behind = f"{len(self.demands)} violations" + (f" and {covers} covers" if covers else "")
+        return [("links", links), ("lower bound", f"{self.lower_bound}, from {behind}")]
 
     def as_dict(self) -> dict[str, Any]:
         """Return the answer as JSON-ready values."""
