@@ -103,6 +103,7 @@ def test_ctrl_c_ends_the_process_although_the_work_goes_on() -> None:
 
 
 def test_the_process_ends_in_the_code_it_is_given(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(interruption, "_abandoned", [])  # of tests before in this process
     with pytest.raises(SystemExit) as end:
         end_process(10)
     assert end.value.code == 10
