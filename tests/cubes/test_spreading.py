@@ -200,7 +200,7 @@ def notes_of(graph: rb.Digraph, r: int, **options: Any) -> Iterator[str]:
 def test_the_time_limit_stops_all_and_an_estimate_is_told() -> None:
     graph, r = ENDLESS
     with concurrent.futures.ThreadPoolExecutor(2) as executor:
-        notes = list(notes_of(graph, r, executor=executor, time_limit=4))
+        notes = list(notes_of(graph, r, executor=executor, time_limit=15))
         found = rb.check_rs_robustness(graph, r, executor=executor, time_limit=1)
     assert any(note.startswith("closed 0 %, about ") and "left on 2 workers" in note for note in notes)
     estimate = found.stats["estimate"]
