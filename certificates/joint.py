@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import json
 import secrets
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import accumulate, pairwise
@@ -44,8 +44,8 @@ MAX_STEPS = 2**20
 #: Nodes and arcs of all unions together that are handed to the ordinary kernel at most.
 MAX_UNION_SIZE = 2**26
 
-#: Unions are compared by sums of secret numbers of so many bits, one for each arc. Nobody who wrote a certificate knew
-#: them, so two different unions are taken for the same with a probability of 2**-256.
+#: Unions are compared by sums, bit by bit modulo 2, of secret numbers of so many bits, one for each arc. Nobody who
+#: wrote a certificate knew them, so two different unions are taken for the same with a probability of 2**-256.
 _SECRET_BITS = 256
 
 #: The greatest r and the longest window that a claim may have.
@@ -195,7 +195,7 @@ class _Union:
     def __init__(self, labels: Sequence[Label]) -> None:
         self._labels = labels
         self._times: Counter[_Arc] = Counter()
-        self._secrets: dict[_Arc, int] = {}
+        self._secrets: defaultdict[_Arc, int] = defaultdict(lambda: secrets.randbits(_SECRET_BITS))
         self.fingerprint = 0
 
     def add(self, arcs: Iterable[_Arc]) -> None:
@@ -203,7 +203,7 @@ class _Union:
         for arc in arcs:
             self._times[arc] += 1
             if self._times[arc] == 1:
-                self.fingerprint ^= self._secrets.setdefault(arc, secrets.randbits(_SECRET_BITS))
+                self.fingerprint ^= self._secrets[arc]
 
     def drop(self, arcs: Iterable[_Arc]) -> None:
         """Give up the arcs of a step that was taken."""

@@ -167,23 +167,43 @@ def caps_in(text: str, graph: Digraph) -> int | dict[Hashable, int]:
     if text.isascii() and text.isdigit():
         return int(text)
     from robustness.errors import UnreadableTopology
+    from robustness.whole_file import read_text
 
     path = Path(text)
     try:
-        lines = path.read_text(encoding="utf-8")
-        rows = json.loads(lines).items() if lines.lstrip().startswith("{") else csv.reader(lines.splitlines())
-        caps = {str(node).strip(): int(cap) for node, cap in (row for row in rows if row)}
+        lines = read_text(path)
+        is_object = lines.lstrip().startswith("{")
+        rows = json.loads(lines, object_pairs_hook=list) if is_object else csv.reader(lines.splitlines())
+        told = [(str(node).strip(), str(cap).strip()) for node, cap in (row for row in rows if row)]
+        if not all(cap.isascii() and cap.isdigit() for _, cap in told):
+            raise ValueError
     except OSError as problem:
         raise click.UsageError(
             f"--max-in-degree is a number, or a file that says it of each node: {problem}."
         ) from None
     except (ValueError, TypeError, RecursionError):
-        raise UnreadableTopology(f"{path}: not lines NODE,NUMBER, and no JSON object of numbers by node") from None
-    by_name = {str(label): label for label in graph.labels}
+        raise UnreadableTopology(
+            f"{path}: not lines NODE,NUMBER, and no JSON object of whole numbers by node"
+        ) from None
+    caps = {node: int(cap) for node, cap in told}
+    if len(caps) < len(told):
+        raise UnreadableTopology(f"{path}: a node has two caps: keep one")
+    by_name = _by_text(graph)
     unknown = [name for name in caps if name not in by_name]
     if unknown:
         raise UnreadableTopology(f"{path}: the node {unknown[0]!r} is none of the network")
     return {by_name[name]: cap for name, cap in caps.items()}
+
+
+def _by_text(graph: Digraph) -> dict[str, Hashable]:
+    """Return the nodes by what files write for them."""
+    from robustness.errors import InvalidGraph
+
+    by_text: dict[str, Hashable] = {}
+    for label in graph.labels:
+        if by_text.setdefault(str(label), label) != label:
+            raise InvalidGraph(f"two nodes are written {str(label)!r}, which a file cannot tell apart: rename one")
+    return by_text
 
 
 def _listed(path: Path, graph: Digraph) -> tuple[Digraph, dict[Hashable, Hashable]]:
@@ -192,7 +212,7 @@ def _listed(path: Path, graph: Digraph) -> tuple[Digraph, dict[Hashable, Hashabl
     from robustness.files import read_topology
 
     listed = read_topology(path)
-    by_name = {str(label): label for label in graph.labels}
+    by_name = _by_text(graph)
     unknown = [label for label in listed.labels if str(label) not in by_name]
     if unknown:
         raise UnreadableTopology(

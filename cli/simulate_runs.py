@@ -17,6 +17,7 @@ from .simulate_asked import SCHEMA, Simulation
 if TYPE_CHECKING:
     from certificates.graph import Label
     from robustness.digraph import Digraph
+    from robustness.limits import Limits
     from robustness.simulation.attacks import Attack
     from robustness.simulation.outcome import Outcome
     from robustness.simulation.scenario import Scenario, Start
@@ -31,6 +32,7 @@ _ATTACK_STEPS = 100_000_000
 def run_scenario(console: Console, query: Query, asked: Simulation) -> ExitCode:
     """Run one scenario from one or more starts."""
     from robustness.errors import InvalidParameter
+    from robustness.limits import Limits
     from robustness.simulation.attacks import Attack
     from robustness.simulation.run import simulate
 
@@ -40,22 +42,24 @@ def run_scenario(console: Console, query: Query, asked: Simulation) -> ExitCode:
         console.error(f"error: {problem}")
         console.error_document(ExitCode.BAD_INPUT, str(problem))
         return ExitCode.BAD_INPUT
+    limits = Limits.of(query.timeout, query.jobs, query.seed)  # for the choice of the adversary and the run together
     if recorded is None:
         scenario, starts = _scenario(_network(asked), query, asked)
         if asked.adversary == "auto" and not asked.malicious:
-            scenario, starts = _worst(console, scenario, starts, query)
+            scenario, starts = _worst(console, scenario, starts, query, limits)
     elif isinstance(recorded, Attack):
         scenario, starts = _scenario_of_attack(recorded, asked), [recorded.start(seed=query.seed)]
     else:
         scenario, starts = recorded[0], [recorded[1]]
     record = asked.plot is not None or asked.animate is not None
+    left: float | None = limits.keywords()["time_limit"]
     with ProgressLine(console) as line:
 
         def work() -> tuple[Outcome, ...]:
-            return simulate(scenario, starts, record=record, jobs=query.jobs, time_limit=query.timeout, progress=line)
+            return simulate(scenario, starts, record=record, jobs=query.jobs, time_limit=left, progress=line)
 
         try:
-            outcomes = query.wait_for(work, line)
+            outcomes = query.within(left).wait_for(work, line)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(line.note) from None
     if asked.save is not None:
@@ -171,14 +175,15 @@ def node_named(graph: Digraph, text: str) -> Label:
     )
 
 
-def _worst(console: Console, scenario: Scenario, starts: list[Start], query: Query) -> tuple[Scenario, list[Start]]:
+def _worst(
+    console: Console, scenario: Scenario, starts: list[Start], query: Query, limits: Limits
+) -> tuple[Scenario, list[Start]]:
     """Return the attack that splits this network, where a search of so many steps finds one; else what was given.
 
     Only the user's own time limit ends the search sooner.
     """
     from dataclasses import replace
 
-    from robustness.limits import Limits
     from robustness.simulation.finding import find_attack_within
 
     graph, delays = scenario.network.union, scenario.schedule.delay_rule
@@ -189,8 +194,7 @@ def _worst(console: Console, scenario: Scenario, starts: list[Start], query: Que
         model = "byzantine"
     elif delays.adversarial and delays.bound >= 1:
         model = f"delayed{local}"
-    limits = Limits.of(query.timeout, seed=query.seed).counted(_ATTACK_STEPS)
-    found = query.wait_for(lambda: find_attack_within(graph, scenario.f, model, limits))
+    found = query.wait_for(lambda: find_attack_within(graph, scenario.f, model, limits.counted(_ATTACK_STEPS)))
     attack = found.attack
     if attack is None:
         if found.outcome == "undecided":

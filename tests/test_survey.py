@@ -266,3 +266,29 @@ def test_quiet_is_one_line(folder: Path) -> None:
     assert quiet.stdout.count("\n") == 1
     assert "networks" in quiet.stdout
     assert run(folder, "--no-models", "--as", "csv", "-q").stdout.startswith("network,")
+
+
+def test_the_limit_for_the_whole_bounds_mending_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    from robustness.surveying import mended
+
+    asked: list[float] = []
+
+    def noted(*_: object, time_limit: float, **__: object) -> rb.MendResult:
+        asked.append(time_limit)
+        raise rb.InvalidParameter("not now")
+
+    monkeypatch.setattr(mended, "mend", noted)
+    rb.survey({"ring": nx.cycle_graph(6)}, models=[], mending=1000.0, total_time_limit=50.0)
+    assert asked
+    assert asked[0] <= 50.0
+
+
+def test_a_bug_in_mending_is_no_missing_proposal(monkeypatch: pytest.MonkeyPatch) -> None:
+    from robustness.surveying import mended
+
+    def broken(*_: object, **__: object) -> None:
+        raise rb.InternalError("please report")
+
+    monkeypatch.setattr(mended, "mend", broken)
+    with pytest.raises(rb.InternalError):
+        rb.survey({"ring": nx.cycle_graph(6)}, models=[], mending=1.0)

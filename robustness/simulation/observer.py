@@ -97,8 +97,8 @@ class Observer:
         where = f"step {step} of {self.scenario.steps}"
         if not seen or not self.normal.any():
             return where
-        spread = self.high - self.low
-        return f"{where} (spread {spread[seen - 1].max():g}, {spread[0].max():g} at first)"
+        now, first = ((self.high[k] - self.low[k]).max() for k in (seen - 1, 0))
+        return f"{where} (spread {now:g}, {first:g} at first)"
 
     def outcomes(self, diverged: npt.NDArray[np.int64]) -> tuple[Outcome, ...]:
         """Return the outcome of every run, given the steps ``(B,)`` at which they diverged (-1: not)."""

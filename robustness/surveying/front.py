@@ -253,7 +253,8 @@ def _within(question: Question, left: float | None) -> Question:
     """Return the question with the time limit that the whole survey leaves for one network."""
     if left is None:
         return question
-    return replace(question, time_limit=left if question.time_limit is None else min(left, question.time_limit))
+    seconds = left if question.time_limit is None else min(left, question.time_limit)
+    return replace(question, time_limit=seconds, mending=min(left, question.mending))
 
 
 def _row(
@@ -283,5 +284,6 @@ def _row(
     if isinstance(found, Findings) and on_findings is not None:
         on_findings(found)
     # A row that the limit for the whole cut short is not what a run with more time would say.
-    was_cut = question.time_limit != asked.time_limit and not row.is_decided
+    is_mended = not asked.mending or (row.links is not None and row.links == row.links_at_least)
+    was_cut = question != asked and not (row.is_decided and is_mended)
     return None if row.error or was_cut else key, row

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+import time
 from dataclasses import replace
 
 from robustness.digraph import Digraph
-from robustness.errors import InvalidParameter, RobustnessError
+from robustness.errors import InvalidParameter
 from robustness.mending import Goal, MendResult, MendVerdict, mend
 from robustness.surveying.row import Findings, Gate, Row
 
@@ -35,7 +36,7 @@ def mended_for(graph: Digraph, row: Row, gate: Gate, seconds: float, seed: int =
         return None
     try:
         return mend(graph, goals, time_limit=seconds, seed=seed)
-    except RobustnessError:  # a goal that no network of this size has
+    except InvalidParameter:  # a goal that no network of this size has
         return None
 
 
@@ -53,11 +54,13 @@ def with_links(findings: Findings, gate: Gate, seconds: float, seed: int = 0) ->
     row = findings.row
     if row.gate == "passed":
         return replace(findings, row=replace(row, links=0, links_at_least=0))
+    started = time.monotonic()
     found = mended_for(findings.graph, row, gate, seconds, seed)
-    if found is None or found.verdict is MendVerdict.IMPOSSIBLE:
-        return findings
-    links = None if found.cost is None else len(found.links)
-    return replace(findings, row=replace(row, links=links, links_at_least=math.ceil(found.lower_bound)))
+    row = replace(row, seconds=row.seconds + time.monotonic() - started)
+    if found is not None and found.verdict is not MendVerdict.IMPOSSIBLE:
+        links = None if found.cost is None else len(found.links)
+        row = replace(row, links=links, links_at_least=math.ceil(found.lower_bound))
+    return replace(findings, row=row)
 
 
 def seconds_for_mending(seconds: float) -> float:

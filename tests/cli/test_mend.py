@@ -250,3 +250,33 @@ class TestCostsAndCapsFromFiles:
         assert bought.exit_code == ExitCode.DONE
         assert bought.stdout.startswith("the budget buys survives f = 1 under delayed, for 3")
         assert run("mend", path, "--model", "delayed").exit_code == ExitCode.USAGE
+
+
+@pytest.mark.parametrize(
+    ("content", "word"),
+    [
+        ('{"0": 2.7}', "whole numbers"),
+        ('{"0": true}', "whole numbers"),
+        ("0,1_0\n", "whole numbers"),
+        ("0,-1\n", "whole numbers"),
+        ("0,3\n0,2\n", "two caps"),
+        ('{"0": 3, "0": 2}', "two caps"),
+        ("9,3\n", "none of the network"),
+    ],
+)
+def test_caps_that_say_nothing_clear_are_refused(platoon: Path, tmp_path: Path, content: str, word: str) -> None:
+    caps = tmp_path / "caps.txt"
+    caps.write_text(content)
+    outcome = run("mend", platoon, "-r", 2, "--max-in-degree", caps)
+    assert outcome.exit_code == ExitCode.BAD_INPUT
+    assert word in outcome.stderr
+
+
+def test_nodes_that_a_file_cannot_tell_apart_are_refused(tmp_path: Path) -> None:
+    network, links = tmp_path / "network.json", tmp_path / "links.csv"
+    write_topology(rb.Digraph([1, "1", 2], [(1, 2), (2, "1")]), network)
+    links.write_text("source,target\n1,2\n")
+    for option in ("--candidates", "--forbid"):
+        outcome = run("mend", network, "-r", 1, option, links)
+        assert outcome.exit_code == ExitCode.BAD_INPUT
+        assert "cannot tell apart" in outcome.stderr

@@ -16,7 +16,7 @@ from cli.exit_codes import ExitCode
 from cli.main import robustness
 from robustness.files import encode_topology
 from robustness.paper.experiments import EXPERIMENTS
-from robustness.simulation import ADVERSARIES, RULES, SCHEDULES
+from robustness.simulation import ADVERSARIES, RULES, SCHEDULES, finding
 from robustness.simulation.claim import Claim
 from robustness.simulation.fault_models import FAULT_MODELS
 from robustness.simulation.finding import ATTACK_MODELS
@@ -327,3 +327,31 @@ class TestAttack:
 
     def test_a_file_that_cannot_be_written(self, tmp_path: Path) -> None:
         assert run("attack", "-", "-o", tmp_path / "no" / "attack.json", graph=CYCLE).exit_code == ExitCode.USAGE
+
+
+def test_one_limit_for_the_adversary_and_the_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """What the choice of the adversary used of the limit is not given to the run again."""
+    from robustness.simulation import run as running
+
+    given: list[float] = []
+    simulate = running.simulate
+
+    def noted(*arguments: Any, time_limit: float, **options: Any) -> Any:
+        given.append(time_limit)
+        return simulate(*arguments, time_limit=60.0, **options)
+
+    now = [100.0]
+    monkeypatch.setattr("robustness.limits.time.monotonic", lambda: now[0])
+    monkeypatch.setattr(running, "simulate", noted)
+    found = finding.find_attack_within
+
+    def slow(*arguments: Any) -> Any:
+        now[0] += 30.0
+        return found(*arguments)
+
+    monkeypatch.setattr(finding, "find_attack_within", slow)
+    path = tmp_path / "complete.json"
+    rb.write_topology(nx.complete_graph(5), path)
+    outcome = CliRunner().invoke(robustness, ["simulate", str(path), "--steps", "20", "--timeout", "40"])
+    assert outcome.exit_code in (0, 30)
+    assert given == [pytest.approx(10.0, abs=1.0)]
