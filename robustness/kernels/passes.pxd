@@ -53,7 +53,7 @@ cpdef sweep(
 cpdef number articulation(const long long[::1] indptr, const int[::1] indices)
 
 @cython.locals(
-    n=number, inside=int[::1], member=cython.uchar[::1], tried=number, size=number, happy=number, i=number, j=number,
+    n=number, inside=int[::1], member=cython.uchar[::1], tried=number, size=number, satisfied=number, i=number, j=number,
     k=number, q=number, joins=number, least=number, lacks=number)
 cpdef clump(
     const long long[::1] in_indptr, const int[::1] in_indices, const long long[::1] out_indptr, const int[::1] out_indices,

@@ -35,7 +35,13 @@ __all__ = [
 
 
 def transpose(indptr, indices):
-    """Return the rows of the reversed arcs, ascending."""
+    """Return the rows of the reversed arcs, ascending.
+
+    Parameters
+    ----------
+    indptr : array of int64, shape (n + 1,)
+    indices : array of int32, shape (m,)
+    """
     n = len(indptr) - 1
     start = np.zeros(n + 1, np.int64)
     for k in range(len(indices)):
@@ -52,7 +58,15 @@ def transpose(indptr, indices):
 
 
 def core(in_indptr, in_indices, out_indptr, out_indices, member, r):
-    """Shrink the set ``member`` to ``core_r`` of it, in place, and return its size."""
+    """Shrink the set ``member`` to ``core_r`` of it, in place, and return its size.
+
+    Parameters
+    ----------
+    in_indptr, out_indptr : arrays of int64, shape (n + 1,)
+    in_indices, out_indices : arrays of int32, shape (m,)
+    member : array of uint8, shape (n,)
+    r : int
+    """
     n = len(member)
     outside = np.zeros(n, np.int32)
     stack = np.empty(n, np.int32)
@@ -88,6 +102,14 @@ def both_cores(in_indptr, in_indices, out_indptr, out_indices, side, r, first, s
     """Try to make a violating pair out of ``side`` (0, 1, or 2 for neither); fill ``first`` and ``second``.
 
     Whenever C = core_r(S1) is nonempty, the best partner of C is core_r(V \\ C); and the same from S2.
+
+    Parameters
+    ----------
+    in_indptr, out_indptr : arrays of int64, shape (n + 1,)
+    in_indices, out_indices : arrays of int32, shape (m,)
+    side : array of int8, shape (n,)
+    r : int
+    first, second : arrays of uint8, shape (n,)
     """
     for wanted in range(2):
         for i in range(len(side)):
@@ -106,6 +128,16 @@ def grow(out_indptr, out_indices, present, heard, order, size, need):
 
     ``order[:size]`` is the seed; the nodes are appended to ``order`` as they join. ``present`` and ``heard`` are
     all zero at the start; :func:`forget` makes them so again, in the time the growth took.
+
+    Parameters
+    ----------
+    out_indptr : array of int64, shape (n + 1,)
+    out_indices : array of int32, shape (m,)
+    present : array of uint8, shape (n,)
+    heard : array of int32, shape (n,)
+        How many present nodes each node hears.
+    order : array of int32, shape (n,)
+    size, need : int
     """
     for k in range(size):
         present[order[k]] = True
@@ -124,7 +156,16 @@ def grow(out_indptr, out_indices, present, heard, order, size, need):
 
 
 def forget(out_indptr, out_indices, present, heard, order, size):
-    """Undo :func:`grow`."""
+    """Undo :func:`grow`.
+
+    Parameters
+    ----------
+    out_indptr : array of int64, shape (n + 1,)
+    out_indices : array of int32, shape (m,)
+    present : array of uint8, shape (n,)
+    heard, order : arrays of int32, shape (n,)
+    size : int
+    """
     for done in range(size):
         present[order[done]] = False
         for k in range(out_indptr[order[done]], out_indptr[order[done] + 1]):
@@ -132,7 +173,17 @@ def forget(out_indptr, out_indices, present, heard, order, size):
 
 
 def breadth_first(indptr, indices, start, order, seen, size):
-    """Append to ``order[size:]`` the unseen nodes reached from ``start``, nearest first; return the new size."""
+    """Append to ``order[size:]`` the unseen nodes reached from ``start``, nearest first; return the new size.
+
+    Parameters
+    ----------
+    indptr : array of int64, shape (n + 1,)
+    indices : array of int32, shape (m,)
+    start : int
+    order : array of int32, shape (n,)
+    seen : array of uint8, shape (n,)
+    size : int
+    """
     if seen[start]:
         return size
     seen[start] = True
@@ -156,6 +207,11 @@ def mother(out_indptr, out_indices):
 
     Suppose x reaches the last start c. Had x been seen in an earlier search, so had c; no search starts later;
     so x was seen in c's own search, hence c reaches x.
+
+    Parameters
+    ----------
+    out_indptr : array of int64, shape (n + 1,)
+    out_indices : array of int32, shape (m,)
     """
     n = len(out_indptr) - 1
     seen = np.zeros(n, np.uint8)
@@ -173,6 +229,13 @@ def smooth(in_indptr, in_indices, out_indptr, out_indices, values, rounds):
 
     With the part along the constant vector removed after each step, this is power iteration towards the Fiedler
     vector of the normalised Laplacian. It only suggests orders; nothing is concluded from these floats.
+
+    Parameters
+    ----------
+    in_indptr, out_indptr : arrays of int64, shape (n + 1,)
+    in_indices, out_indices : arrays of int32, shape (m,)
+    values : array of float64, shape (n,)
+    rounds : int
     """
     n = len(values)
     for _ in range(rounds):
@@ -200,6 +263,14 @@ def sweep(in_indptr, in_indices, out_indptr, out_indices, order, r, cuts):
 
     In each range of prefix lengths the one with the fewest nodes that have r or more in-neighbours on the other
     side is kept. One pass: the counts change only along the arcs of the node that changes sides.
+
+    Parameters
+    ----------
+    in_indptr, out_indptr : arrays of int64, shape (n + 1,)
+    in_indices, out_indices : arrays of int32, shape (m,)
+    order : array of int32, shape (n,)
+    r : int
+    cuts : array of int64, shape (lengths,)
     """
     n = len(order)
     before = np.zeros(n, np.uint8)
@@ -227,6 +298,11 @@ def articulation(indptr, indices):
     """Return a node whose removal disconnects its component of an undirected graph, or -1.
 
     Depth-first search with low points (Hopcroft, Tarjan 1973), without recursion.
+
+    Parameters
+    ----------
+    indptr : array of int64, shape (n + 1,)
+    indices : array of int32, shape (m,)
     """
     n = len(indptr) - 1
     depth = np.full(n, -1, np.int32)
@@ -266,6 +342,14 @@ def clump(in_indptr, in_indices, out_indptr, out_indices, anchors, limit, r, mem
     A node i of such a set has at least ``d_i - r + 1`` in-neighbours in it. While a member lacks some, the in-neighbour
     that would itself lack least joins; past ``limit`` members the next anchor is tried. The set is left in
     ``members[:size]``. Work per anchor: ``limit`` times the degrees met.
+
+    Parameters
+    ----------
+    in_indptr, out_indptr : arrays of int64, shape (n + 1,)
+    in_indices, out_indices : arrays of int32, shape (m,)
+    anchors : array of int32, shape (any,)
+    limit, r : int
+    members : array of int32, shape (n,)
     """
     n = len(in_indptr) - 1
     inside = np.zeros(n, np.int32)
@@ -273,14 +357,14 @@ def clump(in_indptr, in_indices, out_indptr, out_indices, anchors, limit, r, mem
     for tried in range(len(anchors)):
         members[0] = anchors[tried]
         member[anchors[tried]] = True
-        size, happy = 1, 0
+        size, satisfied = 1, 0
         for k in range(out_indptr[members[0]], out_indptr[members[0] + 1]):
             inside[out_indices[k]] += 1
-        # Members before ``happy`` lack nothing, and never will again: inside only grows.
-        while happy < size:
-            i = members[happy]
+        # The first ``satisfied`` members lack nothing, and never will again: inside only grows.
+        while satisfied < size:
+            i = members[satisfied]
             if in_indptr[i + 1] - in_indptr[i] - inside[i] < r:
-                happy += 1
+                satisfied += 1
                 continue
             if size == limit:
                 break
@@ -299,7 +383,7 @@ def clump(in_indptr, in_indices, out_indptr, out_indices, anchors, limit, r, mem
             member[members[k]] = False
             for q in range(out_indptr[members[k]], out_indptr[members[k] + 1]):
                 inside[out_indices[q]] = 0
-        if happy == size and size < n:
+        if satisfied == size and size < n:
             return tried + 1, size
     return len(anchors), 0
 

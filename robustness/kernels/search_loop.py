@@ -57,6 +57,14 @@ class Search:
         NODES, FAILED, PROBES.
     pair : array of uint64, shape (2, words)
         S1 and S2 after FOUND.
+    state, scratch : arrays of uint64, shape (8, words)
+        A level of the stack, as methods take it, and the copy that look-ahead tries a node on.
+    scratch_margin : array of int64, shape (2, n)
+        The margins of that copy.
+    value, chosen : arrays of int64, shape (tried,)
+        Which nodes look-ahead tries, see :func:`robustness.kernels.shared.most_promising`.
+    nobody : array of uint64, shape (words,)
+        Scratch.
     """
 
     def __init__(self, rules, look_ahead):

@@ -35,8 +35,7 @@ Rules (each preserves every violating pair of the state; lemmas in docs/certific
     at most ``|N_i & D_1| - k_i`` (+ b) of i's in-neighbours can be missing from S1, hence be in S2. One blocker
     is pair counting, two are found greedily. A literal whose propagation fails is thereby false (look-ahead).
 
-Everything here runs without the interpreter's lock. The loop that drives it is in
-:mod:`robustness.kernels.search_loop`. Types, shapes and lengths are in ``search_rules.pxd``.
+Everything here runs without the interpreter's lock. :mod:`robustness.kernels.search_loop` drives it.
 """
 
 from __future__ import annotations
@@ -77,10 +76,22 @@ class Rules:
 
     Attributes
     ----------
+    state : array of uint64, shape (8, words)
+        What every method works on, see above.
     margin : array of int64, shape (2, n)
         After :meth:`propagate`, how far every candidate of either side is from being excluded by *count*.
+    buffer : array of uint8, shape (room,)
+        Where the transcript is written; 32 n^2 bytes beyond ``place`` are free at every node.
     place : int
         Where the transcript goes on in ``buffer``; -1: none is kept.
+    allowed : array of int64, shape (2,)
+        ``b_k`` of the rule *share*.
+    blocker, slack : arrays of int64, shape (n,)
+        The blockers of one side, and how many of the in-neighbours in ``reach`` each can do without.
+    reach : array of uint64, shape (n, words)
+        Whom each blocker hears of ``D``.
+    trial : array of uint64, shape (words,)
+        Scratch.
     """
 
     def __init__(self, hears, need, spare, blockers):
@@ -310,7 +321,16 @@ class Rules:
 
 
 def assume(state, kind, side, node, true):
-    """Make the literal (kind, side, node) true or false in ``state``, before any propagation."""
+    """Make the literal (kind, side, node) true or false in ``state``, before any propagation.
+
+    Parameters
+    ----------
+    state : array of uint64, shape (8, words)
+    kind : int
+        SATISFIED or MEMBER.
+    side, node : int
+    true : bool
+    """
     w, bit = node >> 6, bit_of(node)
     if kind == SATISFIED:
         if true:

@@ -24,6 +24,11 @@ def by_degree(hears, size, r):
     """Return whether each of ``size`` nodes hears ``size // 2 + r - 1`` of them: (r,s)-robust for every s.
 
     ``hears[i]`` has bit j set when node i of the seed hears node j of it.
+
+    Parameters
+    ----------
+    hears : array of uint64, shape (size,)
+    size, r : int
     """
     for i in range(size):  # noqa: SIM110 - a generator would be a Python object
         if count(hears[i]) < size // 2 + r - 1:
@@ -32,7 +37,15 @@ def by_degree(hears, size, r):
 
 
 def _exempt(hears, size, r, side):
-    """Return ``|X_S|`` of the nodes S in ``side`` within a seed of at most 16, or 255 when X_S = S."""
+    """Return ``|X_S|`` of the nodes S in ``side`` within a seed of at most 16, or 255 when X_S = S.
+
+    Parameters
+    ----------
+    hears : array of uint64, shape (size,)
+    size, r : int
+    side : int
+        Bit i: node i of the seed.
+    """
     outside = ((1 << size) - 1) ^ side
     members, exempt = 0, 0
     for i in range(size):
@@ -47,6 +60,13 @@ def _violated_again(hears, size, r, s, pair):
 
     Nothing but the definition: what it finds is a violating pair, which is left in ``pair``. Most seeds that are not
     robust are refuted by what refuted them one node ago, in linear time.
+
+    Parameters
+    ----------
+    hears : array of uint64, shape (size,)
+    size, r, s : int
+    pair : array of int64, shape (2,)
+        Each entry a set of nodes of the seed as bits; 0 and 0 when no pair is known.
     """
     last = 1 << (size - 1)
     for k in range(3):
@@ -58,7 +78,15 @@ def _violated_again(hears, size, r, s, pair):
 
 
 def _proven(hears, size, r, s, pair, examine):
-    """Return whether the seed is (r,s)-robust by the degree rule or, when it is small, by ``examine``."""
+    """Return whether the seed is (r,s)-robust by the degree rule or, when it is small, by ``examine``.
+
+    Parameters
+    ----------
+    hears : array of uint64, shape (size,)
+    size, r, s : int
+    pair : array of int64, shape (2,)
+    examine : callable
+    """
     if by_degree(hears, size, r):
         return True
     if size > EXHAUSTIVE_NODES or (pair[0] and _violated_again(hears, size, r, s, pair)):
@@ -71,7 +99,21 @@ def _proven(hears, size, r, s, pair, examine):
 
 
 def _join(indptr, indices, seed, size, links, met, known):
-    """Count the neighbours of ``seed[size]`` as linked; return how many nodes were met so far, and which seeds now."""
+    """Count the neighbours of ``seed[size]`` as linked; return how many nodes were met so far, and which seeds now.
+
+    Parameters
+    ----------
+    indptr : array of int64, shape (n + 1,)
+    indices : array of int32, shape (m,)
+    seed : array of int32, shape (n,)
+    size : int
+    links : array of int32, shape (n,)
+        How many links every node has to the seed.
+    met : array of int32, shape (n,)
+        The nodes with a link, as they were met.
+    known : int
+        How many these are.
+    """
     bits = 0
     for k in range(indptr[seed[size]], indptr[seed[size] + 1]):
         j = indices[k]
@@ -86,7 +128,15 @@ def _join(indptr, indices, seed, size, links, met, known):
 
 
 def _most_linked(seed, size, links, met, known):
-    """Return the node outside the seed with most links to it, or -1."""
+    """Return the node outside the seed with most links to it, or -1.
+
+    Parameters
+    ----------
+    seed : array of int32, shape (n,)
+    size : int
+    links, met : arrays of int32, shape (n,)
+    known : int
+    """
     for q in range(size):
         links[seed[q]] = -links[seed[q]]
     best, most = -1, 0
@@ -107,6 +157,16 @@ def find_seed(in_indptr, in_indices, out_indptr, out_indices, anchors, barred, r
 
     ``examine(hears, size, pair)`` says whether a seed of at most 16 nodes is proven robust by all its subsets; when it
     is refuted, ``examine`` leaves the violating pair in ``pair``, two sets of nodes of the seed as bits.
+
+    Parameters
+    ----------
+    in_indptr, out_indptr : arrays of int64, shape (n + 1,)
+    in_indices, out_indices : arrays of int32, shape (m,)
+    anchors : array of int32, shape (any,)
+    barred : array of uint8, shape (n,)
+    r, s, limit, work : int
+    seed : array of int32, shape (n,)
+    examine : callable
     """
     links = np.zeros(len(barred), np.int32)
     met = np.empty(len(barred), np.int32)

@@ -21,7 +21,13 @@ __all__ = ["copy_state", "core", "most_promising", "varint"]
 
 
 def varint(buffer, place, value):
-    """Write a number to ``buffer``, seven bits a byte, low first; return the place behind it."""
+    """Write a number to ``buffer``, seven bits a byte, low first; return the place behind it.
+
+    Parameters
+    ----------
+    buffer : array of uint8, shape (room,)
+    place, value : int
+    """
     while value >= 128:
         buffer[place] = value & 127 | 128
         place += 1
@@ -31,7 +37,12 @@ def varint(buffer, place, value):
 
 
 def copy_state(target, source):
-    """Copy a state."""
+    """Copy a state.
+
+    Parameters
+    ----------
+    target, source : arrays of uint64, shape (rows, words)
+    """
     for row in range(source.shape[0]):
         for w in range(source.shape[1]):
             target[row, w] = source[row, w]
@@ -41,6 +52,12 @@ def core(hears, need, candidates, support):
     """Shrink ``candidates`` to its largest subset K with ``|N_i & (K | support)| >= need_i`` on K.
 
     Return whether K is nonempty. Such subsets are closed under union, so there is one largest, whatever the order.
+
+    Parameters
+    ----------
+    hears : array of uint64, shape (n, words)
+    need : array of int64, shape (n,)
+    candidates, support : arrays of uint64, shape (words,)
     """
     words = candidates.shape[0]
     while True:

@@ -9,36 +9,40 @@ cpdef void drop_extremes(
     double[::1] rel, number number_heard, number drop, bint strict, double[::1] above, double[::1] below,
     unsigned char[::1] keep) noexcept nogil
 
-@cython.locals(
-    slots=number, now=number, delay_row=number, status_row=number, heard=number, missing=number, e=number, state=number,
-    late=number, value=double)
-cdef (number, number) _listen(
-    number b, number begin, number end, number step, number tau, double[:, :, ::1] ring,
-    const long long[::1] channel, const long long[:, ::1] delay, const unsigned char[:, ::1] status, bint remember,
-    double[:, ::1] memory, long long[:, ::1] stamp, double[::1] values, long long[::1] arcs) noexcept nogil
+@cython.final
+cdef class Turn:
+    cdef number step, tau, f
+    cdef bint first_order, strict, hold, remember
+    cdef double T
+    cdef const long long[::1] indptr, channel
+    cdef const double[::1] weight, alpha
+    cdef const double[:, :, ::1] ring
+    cdef const long long[:, ::1] delay
+    cdef const unsigned char[:, ::1] status, update
+    cdef double[:, ::1] held, memory
+    cdef unsigned char[:, ::1] kept
+    cdef long long[:, ::1] stamp
+    cdef const double[:, ::1] p, q
+    cdef double[:, ::1] new_p, new_q
+    cdef double[::1] values, rel, above, below
+    cdef long long[::1] arcs
+    cdef unsigned char[::1] keep
 
-@cython.locals(
-    half=double, b=number, i=number, e=number, t=number, update_row=number, begin=number, end=number, own=double,
-    updates=bint, total=double, mass=double, heard=number, missing=number, u=double)
-cdef void _advance(
-    number lo, number hi, number step, number tau, number f, bint first_order, bint strict, bint hold, bint remember,
-    double T, double[:, ::1] p, double[:, ::1] q, double[:, :, ::1] ring, const long long[::1] channel,
-    const long long[:, ::1] delay, const unsigned char[:, ::1] status, const unsigned char[:, ::1] update,
-    double[:, ::1] held, unsigned char[:, ::1] kept, double[:, ::1] memory, long long[:, ::1] stamp,
-    const long long[::1] indptr, const double[::1] weight, const double[::1] self_weight, const double[::1] alpha,
-    double[:, ::1] new_p, double[:, ::1] new_q, double[::1] values, double[::1] rel, double[::1] above,
-    double[::1] below, long long[::1] arcs, unsigned char[::1] keep) noexcept nogil
+    @cython.locals(
+        slots=number, now=number, delay_row=number, status_row=number, heard=number, missing=number, e=number,
+        state=number, late=number, value=double)
+    cdef (number, number) _listen(self, number b, number begin, number end) noexcept nogil
 
-@cython.locals(
-    widest=number, i=number, values=double[::1], rel=double[::1], above=double[::1], below=double[::1],
-    arcs=cython.longlong[::1], keep=cython.uchar[::1])
-cpdef advance(
-    number lo, number hi, number step, number tau, number f, bint first_order, bint strict, bint hold, bint remember,
-    double T, double[:, ::1] p, double[:, ::1] q, double[:, :, ::1] ring, const long long[::1] channel,
-    const long long[:, ::1] delay, const unsigned char[:, ::1] status, const unsigned char[:, ::1] update,
-    double[:, ::1] held, unsigned char[:, ::1] kept, double[:, ::1] memory, long long[:, ::1] stamp,
-    const long long[::1] indptr, const double[::1] weight, const double[::1] self_weight, const double[::1] alpha,
-    double[:, ::1] new_p, double[:, ::1] new_q)
+    @cython.locals(t=number, e=number, total=double, mass=double)
+    cdef (double, double) _pull(self, number b, number i, double own, number heard, number missing) noexcept nogil
+
+    @cython.locals(
+        half=double, b=number, i=number, e=number, update_row=number, own=double, speed=double, updates=bint,
+        total=double, mass=double, heard=number, missing=number, u=double)
+    cdef void _advance(self, number lo, number hi) noexcept nogil
+
+    @cython.locals(first=number, last=number)
+    cpdef advance(self, lo, hi)
 
 @cython.locals(
     slots=number, now=number, b=number, e=number, place=number, up=bint, chosen=number, best=double, late=number,

@@ -30,17 +30,9 @@ except ImportError:
 if not cython.compiled:
     from robustness.kernels.passes import both_cores
 
-__all__ = ["tabu"]
+__all__ = ["Tabu"]
 
 _FACTOR, _INCREMENT, _ALL_BITS = 6364136223846793005, 1442695040888963407, 0xFFFFFFFFFFFFFFFF
-
-
-def _tell(in_indptr, in_indices, rise, fall, i, side, up, down):
-    """Add changes of node i's marginal prices to what its in-neighbours would cause by leaving or joining its side."""
-    if up != 0 or down != 0:
-        for k in range(in_indptr[i], in_indptr[i + 1]):
-            rise[in_indices[k], side] += up
-            fall[in_indices[k], side] += down
 
 
 def _draw(state):
@@ -48,144 +40,207 @@ def _draw(state):
     return (state * _FACTOR + _INCREMENT) & _ALL_BITS
 
 
-def tabu(
-    in_indptr, in_indices, out_indptr, out_indices, side, kind, price, r, s, fee, least, steps, tenure, seed,
-    first, second,
-):  # fmt: skip
-    """Search ``steps`` moves from ``side`` for a pair that violates (r,s); fill ``first`` and ``second`` with it.
+class Tabu:
+    """A search from one state: who is where, who pays how much, and what every move would change.
 
-    ``kind[i]`` is 1 for an anchor, which never moves. ``price[kind, x + 1]`` is what x in-neighbours outside cost, for
-    x = -1 .. largest in-degree + 1. Sides never get smaller than ``least`` nodes. ``side`` is changed in place.
-    Returns whether a pair was found.
+    Parameters
+    ----------
+    arcs : (in_indptr, in_indices, out_indptr, out_indices)
+        The rows of in-neighbours and of out-neighbours.
+    target : Target
+        What a pair has to violate, r and s, and what states cost on the way there: ``price``, ``fee`` for a node in
+        neither side, ``least`` nodes of a side.
+
+    Attributes
+    ----------
+    in_indptr, out_indptr : arrays of int64, shape (n + 1,)
+    in_indices, out_indices : arrays of int32, shape (m,)
+    price : array of int64, shape (2, d + 3)
+        ``price[kind, x + 1]`` is what x in-neighbours outside cost, for x = -1 .. d + 1, d the largest in-degree.
+    side : array of int8, shape (n,)
+        Where every node is, 0, 1 or 2; changed in place.
+    kind : array of int8, shape (n,)
+        1 for an anchor, which never moves, else 0.
+    inside : array of int32, shape (n, 3)
+        How many in-neighbours every node has in each side and in neither.
+    outside : array of int32, shape (n,)
+        How many a node of a side has outside that side.
+    rise, fall : arrays of int32, shape (n, 3)
+        The sums, over the hearers that a node has in each side, of what they would pay more if the node left that side,
+        and less if it joined.
+    size, exposed : arrays of int64, shape (3,)
+        How many nodes each side has, and how many of them pay.
+    paying, place : arrays of int32, shape (n,)
+        The ``count`` nodes that pay, and the place of each among them.
+    until : array of int64, shape (n,)
+        The step before which a node moves only to a state better than the best.
     """
-    luck = _draw(seed)
-    n = len(side)
-    inside = np.zeros((n, 3), np.int32)
-    outside = np.zeros(n, np.int32)
-    rise = np.zeros((n, 3), np.int32)
-    fall = np.zeros((n, 3), np.int32)
-    size = np.zeros(3, np.int64)
-    exposed = np.zeros(3, np.int64)
-    paying = np.empty(n, np.int32)
-    place = np.full(n, -1, np.int32)
-    until = np.zeros(n, np.int64)
-    count = cost = 0
-    for i in range(n):
-        size[side[i]] += 1
-        for k in range(in_indptr[i], in_indptr[i + 1]):
-            inside[i, side[in_indices[k]]] += 1
-    for i in range(n):
-        a = side[i]
-        if a == 2:
-            continue
-        x = outside[i] = in_indptr[i + 1] - in_indptr[i] - inside[i, a]
-        t = kind[i]
-        _tell(in_indptr, in_indices, rise, fall, i, a, price[t, x + 2] - price[t, x + 1], price[t, x + 1] - price[t, x])
-        cost += price[t, x + 1]
-        if x >= r:
-            exposed[a] += 1
-            place[i] = count
-            paying[count] = i
-            count += 1
-    best = cost + fee * size[2]
-    for step in range(steps):
-        if count < s and size[0] > exposed[0] and size[1] > exposed[1]:
-            for i in range(n):
-                first[i] = side[i] == 0
-                second[i] = side[i] == 1
-            return True
-        if (
-            s == 1
-            and step % n == n - 1
-            and both_cores(in_indptr, in_indices, out_indptr, out_indices, side, r, first, second)
-        ):
-            return True
-        if count == 0:
-            return False
-        # The best move around one paying node.
-        luck = _draw(luck)
-        u = paying[((luck >> 33) & 0x7FFFFFFF) % count]
-        current = cost + fee * size[2]
+
+    def __init__(self, arcs, target, side, kind):
+        self.in_indptr, self.in_indices, self.out_indptr, self.out_indices = arcs
+        self.r, self.s, self.price, self.fee, self.least = target
+        self.side, self.kind = side, kind
+        self.n = n = len(side)
+        self.inside = np.zeros((n, 3), np.int32)
+        self.outside = np.zeros(n, np.int32)
+        self.rise = np.zeros((n, 3), np.int32)
+        self.fall = np.zeros((n, 3), np.int32)
+        self.size = np.zeros(3, np.int64)
+        self.exposed = np.zeros(3, np.int64)
+        self.paying = np.empty(n, np.int32)
+        self.place = np.full(n, -1, np.int32)
+        self.until = np.zeros(n, np.int64)
+        self.count = self.cost = 0
+        self._count_all()
+
+    def _count_all(self):
+        """Count the sides, and what everybody in them pays."""
+        for i in range(self.n):
+            self.size[self.side[i]] += 1
+            for k in range(self.in_indptr[i], self.in_indptr[i + 1]):
+                self.inside[i, self.side[self.in_indices[k]]] += 1
+        for i in range(self.n):
+            if self.side[i] < 2:
+                self._enter(i, self.side[i])
+
+    def _tell(self, i, side, up, down):
+        """Tell the in-neighbours of node i how its marginal prices changed: what they cause by leaving or joining."""
+        if up != 0 or down != 0:
+            for k in range(self.in_indptr[i], self.in_indptr[i + 1]):
+                self.rise[self.in_indices[k], side] += up
+                self.fall[self.in_indices[k], side] += down
+
+    def _expose(self, i, side):
+        """Enter node i of ``side`` in the list of those that pay."""
+        self.exposed[side] += 1
+        self.place[i] = self.count
+        self.paying[self.count] = i
+        self.count += 1
+
+    def _cover(self, i, side):
+        """Take node i of ``side`` off that list; the last of the list takes its place."""
+        self.exposed[side] -= 1
+        self.count -= 1
+        last = self.paying[self.count]
+        self.paying[self.place[i]] = last
+        self.place[last] = self.place[i]
+
+    def _enter(self, i, side):
+        """Let node i pay as a member of ``side``."""
+        t = self.kind[i]
+        x = self.in_indptr[i + 1] - self.in_indptr[i] - self.inside[i, side]
+        self.outside[i] = x
+        before, now, after = self.price[t, x], self.price[t, x + 1], self.price[t, x + 2]
+        self._tell(i, side, after - now, now - before)
+        self.cost += now
+        if x >= self.r:
+            self._expose(i, side)
+
+    def _leave(self, i, side):
+        """Let node i, which is no anchor, pay no more as a member of ``side``."""
+        x = self.outside[i]
+        before, now, after = self.price[0, x], self.price[0, x + 1], self.price[0, x + 2]
+        self._tell(i, side, now - after, before - now)
+        self.cost -= now
+        if x >= self.r:
+            self._cover(i, side)
+
+    def _best_move(self, u, step, best):
+        """Find the best move that helps node u, which pays: return who moves, or -1, and where to."""
+        luck, current = self.luck, self.cost + self.fee * self.size[2]
         mover, goal, gain, ties = -1, 0, 1 << 40, 0
-        for k in range(in_indptr[u], in_indptr[u + 1] + 1):
-            v = u if k == in_indptr[u + 1] else in_indices[k]
-            a = side[v]
-            if kind[v] == 1 or (v != u and a == side[u]) or (a < 2 and size[a] <= least):
+        begin, end, own = self.in_indptr[u], self.in_indptr[u + 1], self.side[u]
+        for k in range(begin, end + 1):
+            v = u if k == end else self.in_indices[k]
+            a = self.side[v]
+            if self.kind[v] == 1 or (v != u and a == own) or (a < 2 and self.size[a] <= self.least):
                 continue
-            degree = in_indptr[v + 1] - in_indptr[v]
-            leave = rise[v, a] - price[0, outside[v] + 1] if a < 2 else -fee
+            degree = self.in_indptr[v + 1] - self.in_indptr[v]
+            leave = self.rise[v, a] - self.price[0, self.outside[v] + 1] if a < 2 else -self.fee
             for b in range(3):
-                if b == a or (v != u and b != side[u]):
+                if b == a or (v != u and b != own):
                     continue
-                change = leave + (price[0, degree - inside[v, b] + 1] - fall[v, b] if b < 2 else fee)
-                if change > gain or (until[v] > step and current + change >= best):
+                if b < 2:
+                    change = leave + self.price[0, degree - self.inside[v, b] + 1] - self.fall[v, b]
+                else:
+                    change = leave + self.fee
+                if change > gain or (self.until[v] > step and current + change >= best):
                     continue
                 ties = ties + 1 if change == gain else 1
                 luck = _draw(luck)
                 if change < gain or ((luck >> 33) & 0x7FFFFFFF) % ties == 0:
                     mover, goal, gain = v, b, change
-        if mover < 0:
-            continue
-        # Make it: first the mover's own price, then its hearers'.
-        v, a, b = mover, side[mover], goal
+        self.luck = luck
+        return mover, goal
+
+    def _move(self, v, b):
+        """Move node v to ``b``: first its own price, then those of its hearers."""
+        a = self.side[v]
         if a < 2:
-            x = outside[v]
-            _tell(
-                in_indptr, in_indices, rise, fall, v, a,
-                price[0, x + 1] - price[0, x + 2], price[0, x] - price[0, x + 1],
-            )  # fmt: skip
-            cost -= price[0, x + 1]
-            if x >= r:
-                exposed[a] -= 1
-                count -= 1
-                paying[place[v]] = paying[count]
-                place[paying[count]] = place[v]
-        side[v] = b
-        size[a] -= 1
-        size[b] += 1
+            self._leave(v, a)
+        self.side[v] = b
+        self.size[a] -= 1
+        self.size[b] += 1
         if b < 2:
-            x = outside[v] = in_indptr[v + 1] - in_indptr[v] - inside[v, b]
-            _tell(
-                in_indptr, in_indices, rise, fall, v, b,
-                price[0, x + 2] - price[0, x + 1], price[0, x + 1] - price[0, x],
-            )  # fmt: skip
-            cost += price[0, x + 1]
-            if x >= r:
-                exposed[b] += 1
-                place[v] = count
-                paying[count] = v
-                count += 1
-        for k in range(out_indptr[v], out_indptr[v + 1]):
-            i = out_indices[k]
-            c = side[i]
-            inside[i, a] -= 1
-            inside[i, b] += 1
+            self._enter(v, b)
+        for k in range(self.out_indptr[v], self.out_indptr[v + 1]):
+            i = self.out_indices[k]
+            c = self.side[i]
+            self.inside[i, a] -= 1
+            self.inside[i, b] += 1
             if c == 2 or (c != a and c != b):
                 continue
-            t = kind[i]
-            x = outside[i]
+            t = self.kind[i]
+            x = self.outside[i]
             y = x + 1 if c == a else x - 1
-            outside[i] = y
-            cost += price[t, y + 1] - price[t, x + 1]
-            _tell(
-                in_indptr, in_indices, rise, fall, i, c,
-                price[t, y + 2] - price[t, y + 1] - price[t, x + 2] + price[t, x + 1],
-                price[t, y + 1] - price[t, y] - price[t, x + 1] + price[t, x],
-            )  # fmt: skip
-            if y == r and x < r:
-                exposed[c] += 1
-                place[i] = count
-                paying[count] = i
-                count += 1
-            elif x == r and y < r:
-                exposed[c] -= 1
-                count -= 1
-                paying[place[i]] = paying[count]
-                place[paying[count]] = place[i]
-        luck = _draw(luck)
-        until[v] = step + tenure + ((luck >> 33) & 0x7FFFFFFF) % (tenure + 1)
-        best = min(best, cost + fee * size[2])
-    return False
+            self.outside[i] = y
+            old_before, old, old_after = self.price[t, x], self.price[t, x + 1], self.price[t, x + 2]
+            before, now, after = self.price[t, y], self.price[t, y + 1], self.price[t, y + 2]
+            self.cost += now - old
+            self._tell(i, c, after - now - old_after + old, now - before - old + old_before)
+            if y == self.r and x < self.r:
+                self._expose(i, c)
+            elif x == self.r and y < self.r:
+                self._cover(i, c)
+
+    def run(self, steps, tenure, seed, first, second):
+        """Make ``steps`` moves; return whether a violating pair was found, and fill ``first`` and ``second`` with it.
+
+        Parameters
+        ----------
+        steps : int
+        tenure : int
+            A node that has moved stays for ``tenure`` to twice as many steps, unless its move leads to a best state.
+        seed : int
+        first, second : arrays of uint8, shape (n,)
+        """
+        self.luck = _draw(seed)
+        best = self.cost + self.fee * self.size[2]
+        for step in range(steps):
+            if self.count < self.s and self.size[0] > self.exposed[0] and self.size[1] > self.exposed[1]:
+                for i in range(self.n):
+                    first[i] = self.side[i] == 0
+                    second[i] = self.side[i] == 1
+                return True
+            if (
+                self.s == 1
+                and step % self.n == self.n - 1
+                and both_cores(
+                    self.in_indptr, self.in_indices, self.out_indptr, self.out_indices, self.side, self.r, first, second
+                )
+            ):
+                return True
+            if self.count == 0:
+                return False
+            self.luck = _draw(self.luck)
+            v, b = self._best_move(self.paying[((self.luck >> 33) & 0x7FFFFFFF) % self.count], step, best)
+            if v < 0:
+                continue
+            self._move(v, b)
+            self.luck = _draw(self.luck)
+            self.until[v] = step + tenure + ((self.luck >> 33) & 0x7FFFFFFF) % (tenure + 1)
+            best = min(best, self.cost + self.fee * self.size[2])
+        return False
 
 
 #: The digest of the sources that this machine code was made from.

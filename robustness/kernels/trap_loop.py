@@ -66,6 +66,14 @@ class TrapSearch:
         NODES, FAILED, PROBES.
     found : array of uint64, shape (4, words)
         After FOUND: the malicious nodes inside side 1 and inside side 2, N1 and N2.
+    state, scratch : arrays of uint64, shape (9, words)
+        A level of the stack, as methods take it, and the copy that look-ahead tries a node on.
+    scratch_margin : array of int64, shape (2, n)
+        The margins of that copy.
+    value, chosen : arrays of int64, shape (tried,)
+        Which nodes look-ahead tries, see :func:`robustness.kernels.shared.most_promising`.
+    votes : array of int64, shape (n,)
+        How much drawing a node would settle.
     """
 
     def __init__(self, rules, look_ahead, eager):
@@ -84,7 +92,7 @@ class TrapSearch:
         self.side, self.node = 0, -1
 
     def _harvest(self, state):
-        """Try to read a solution off the state with M = Z: the largest held set of one side, then of what remains.
+        """Try to read a solution off the state with M = Z: the largest satisfied set of one side, then of what remains.
 
         At a fixpoint of the rules Z obeys its bound. ``found`` (4, words) receives the malicious nodes inside side 1
         and inside side 2, N1 and N2.
@@ -106,7 +114,7 @@ class TrapSearch:
         return False
 
     def _wanted(self, state):
-        """Choose the possibly malicious node that most unheld nodes of one side hear; without one the side is -1."""
+        """Choose the possibly malicious node that most unsatisfied nodes of a side hear; without one the side is -1."""
         n, words, votes, most = self.rules.n, self.rules.words, self.votes, 0
         self.side, self.node = -1, -1
         for side in range(2):
@@ -255,8 +263,8 @@ class TrapSearch:
     def _next_root(self, state):
         """Return the node that may be normal on side 1 and has fewest in-neighbours to spare; ties: most needed.
 
-        Refuted roots are inside no more, so the next root is among those that hear them: soon some can be held by
-        nobody and are peeled. -1 when no node is left.
+        Refuted roots are normal no more, so the next root is among those that hear them: soon some lack too much and
+        are peeled. -1 when no node is left.
         """
         words, need = self.rules.words, self.rules.need
         chosen, least = -1, 0

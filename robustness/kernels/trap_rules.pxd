@@ -36,7 +36,7 @@ cdef class TrapRules:
 
     @cython.locals(
         words=number, changed=bint, some=bint, w=number, x=number, i=number, inside=number, extra=number, usable=number,
-        rest=word, bit=word, known=word, held=word, wanted=word)
+        rest=word, bit=word, known=word, certain=word, wanted=word)
     cdef number _peel(self, word[:, ::1] state, number side) noexcept nogil
 
     @cython.locals(twice=number, spent_i=number, spent_j=number)

@@ -1,14 +1,8 @@
 """The heart of the trap search: one state and its propagation rules.
 
-What is looked for
-------------------
-Disjoint sets M, N1, N2 with N1, N2 nonempty. N_k are normal nodes that stay where they are; node i of N_k is *held*
-when at least ``k_i = d_i - f`` of its in-neighbours are *inside* side k. Two kinds, by what a malicious node can do:
-
-* two faces (a trap): every node of M is inside both sides;
-* one face (a violation): every node of M is inside exactly one side.
-
-Two bounds on M: *total*, ``|M| <= f``; *local*, every node outside M hears at most f nodes of M.
+What is looked for is defined in :mod:`robustness.traps.question`: M, N1 and N2, with one face or two, M bounded in
+total or locally. Node i of N_k is *satisfied* when at least ``k_i = d_i - f`` of its in-neighbours are *inside* side k:
+the nodes of N_k are, and malicious nodes, inside both sides with two faces and inside one of them with one.
 
 State
 -----
@@ -44,11 +38,9 @@ Rules (each keeps every solution of the state)
     i in T_1 excludes j from P_2 (and mirrored) when ``|A | B| + |A & B & Z| + gain < k_i + k_j`` with
     ``A = N_i & D_1 - j``, ``B = N_j & D_2 - i``: i and j need ``k_i + k_j`` places inside, a node that is
     inside one side only gives each at most one place in all, a node of Z two (two faces), and *gain* is the
-    most that further malicious nodes can add. This is pair counting of
-    :mod:`robustness.kernels.search_rules` with M on both sides at once
+    most that further malicious nodes can add
 
-Everything here runs without the interpreter's lock. The loop that drives it is in
-:mod:`robustness.kernels.trap_loop`. Types, shapes and lengths are in ``trap_rules.pxd``.
+Everything here runs without the interpreter's lock. :mod:`robustness.kernels.trap_loop` drives it.
 """
 
 from __future__ import annotations
@@ -69,8 +61,7 @@ if not cython.compiled:
 __all__ = ["TrapRules"]
 
 P, Q, F, T, Z = layout.TRAP_P, layout.TRAP_Q, layout.TRAP_F, layout.TRAP_T, layout.TRAP_Z
-PROPAGATE, EXCLUDE = layout.PROPAGATE, layout.EXCLUDE
-NORMAL = layout.NORMAL
+PROPAGATE, EXCLUDE, NORMAL = layout.PROPAGATE, layout.EXCLUDE, layout.NORMAL
 
 
 class TrapRules:
@@ -91,14 +82,21 @@ class TrapRules:
 
     Attributes
     ----------
+    state : array of uint64, shape (9, words)
     margin : array of int64, shape (2, n)
         After :meth:`propagate`, how far every candidate of either side is from being excluded by *count* if nobody
         else is malicious.
-    buffer : array of uint8
+    buffer : array of uint8, shape (room,)
         Where the transcript is written; at least 32 n^2 bytes beyond ``place`` are free at every node.
     place : int
         Where the transcript goes on in ``buffer``; -1: none is kept. One is kept with ``counting`` only, since the
         verifier applies *share* by itself.
+    blocker, budget, votes : arrays of int64, shape (n,)
+        The blockers of one side, how many further malicious nodes each can hear, and scratch of *share*.
+    reach, loose : arrays of uint64, shape (n, words)
+        Whom each blocker hears of ``D``, and of ``Q - Z``.
+    near : array of uint64, shape (3, words)
+        Whom the candidate hears of ``D``, of ``Q - Z``, and of ``D`` those that give one place at most.
     """
 
     def __init__(self, hears, need, f, two_faces, local, counting):
@@ -107,7 +105,6 @@ class TrapRules:
         self.n, self.words = hears.shape
         self.votes = np.zeros(self.n, np.int64)
         self.margin = np.zeros((2, self.n), np.int64)
-        # See _gather_blockers and _exclude.
         self.reach = np.empty((self.n, self.words), np.uint64)
         self.loose = np.empty((self.n, self.words), np.uint64)
         self.near = np.empty((3, self.words), np.uint64)
@@ -231,16 +228,16 @@ class TrapRules:
                     known = self.sure(state, side, x)
                     inside += count(self.hears[i, x] & known)
                     extra += count(self.hears[i, x] & state[Q + side, x] & ~known)
-                held = state[T + side, w] & bit
-                if inside > self.need[i] or (inside == self.need[i] and not held):
+                certain = state[T + side, w] & bit
+                if inside > self.need[i] or (inside == self.need[i] and not certain):
                     continue
                 usable = min(self._left(state, i), extra)
                 if inside + usable < self.need[i]:
-                    if held:
+                    if certain:
                         return 0
                     state[P + side, w] &= ~bit
                     changed = True
-                elif inside + usable == self.need[i] and held:
+                elif inside + usable == self.need[i] and certain:
                     for x in range(words):
                         wanted = self.hears[i, x] & self.sure(state, side, x)
                         if usable == extra:
@@ -304,10 +301,7 @@ class TrapRules:
         return self._gain(self.budget[a], left_j, x, y, z_i, z_j)
 
     def _exclude(self, state, side):
-        """Apply *count* with every blocker of a side; return 0: contradiction, 2: something changed, 1: nothing.
-
-        ``near`` (3, words): whom the candidate hears of D, of Q - Z, and of D those that give one place at most.
-        """
+        """Apply *count* with all blockers of a side; return 0 for a contradiction, 2 when something changed, else 1."""
         words, other, near, reach, need = self.words, 1 - side, self.near, self.reach, self.need
         most = self._gather_blockers(state, side)
         changed = False
@@ -377,9 +371,7 @@ class TrapRules:
                         while open_:
                             self.votes[(x << 6) + first(open_)] += 1
                             open_ &= open_ - 1
-        left = self.f
-        for x in range(words):
-            left -= count(state[Z, x])
+        left = self._left(state, 0)  # in total: the same for every node
         while total > 0 and left > 0:
             best = 0
             for v in range(n):
@@ -429,7 +421,16 @@ class TrapRules:
 
 
 def assume(state, kind, side, node, true, two_faces):
-    """Make the literal (kind, side, node) true or false in ``state``, before any propagation."""
+    """Make the literal (kind, side, node) true or false in ``state``, before any propagation.
+
+    Parameters
+    ----------
+    state : array of uint64, shape (9, words)
+    kind : int
+        NORMAL or MALICIOUS.
+    side, node : int
+    true, two_faces : bool
+    """
     w, bit = node >> 6, bit_of(node)
     if kind == NORMAL:
         if true:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -22,11 +23,11 @@ from robustness.simulation.draws import Draws
 from robustness.simulation.dynamics import Floats
 from robustness.simulation.fault_models import fault_model_named, require_fault_model
 from robustness.simulation.gains import Fleet, fleet_of
-from robustness.simulation.hearing import Hearing, Stores, stores_for
+from robustness.simulation.hearing import Hearing, Law, States, Stores, stores_for
 from robustness.simulation.lawful import require_lawful
 from robustness.simulation.own_rule import advance_by
 from robustness.simulation.scenario import Scenario, Start
-from robustness.simulation.schedules import Past, Schedule
+from robustness.simulation.schedules import Past
 from robustness.simulation.sensing import board_for
 from robustness.simulation.topology import Topology, extended_by
 from robustness.simulation.update_rules import rule_named
@@ -67,6 +68,10 @@ class Batch:
         self.topology: Topology = extended_by(scenario.network, scenario.added_links, base.ids(always))
         graph, rule, runs = self.topology.union, rule_named(scenario.rule), len(starts)
         self.fleet: Fleet = fleet_of(graph, rule, scenario.f, scenario.T, scenario.alpha, scenario.weights)
+        self.law = Law(
+            min(scenario.f, graph.n), rule.first_order, rule.strict, scenario.T, graph.in_indptr, self.fleet.weight,
+            self.fleet.alpha,
+        )  # fmt: skip
         malicious = np.zeros((runs, graph.n), dtype=bool)
         for b, start in enumerate(starts):
             malicious[b, list(graph.ids(start.malicious))] = True
@@ -155,34 +160,16 @@ class Batch:
 
     def _moved(self, step: int, hearing: Hearing, pool: Executor | None) -> tuple[Floats, Floats]:
         """Return positions and velocities one step later."""
-        states = self.p, self.q, np.empty_like(self.p), np.empty_like(self.q)
+        states = States.after(self.p, self.q)
         if self.fleet.rule.update is not None:
             advance_by(self.fleet.rule.update, self.topology.union, step, self.scenario.schedule.oldest, hearing,
                        self.stores, states)  # fmt: skip
-            return states[2:]
-        runs = len(self.p)
-        bounds = [runs * part // self.jobs for part in range(self.jobs + 1)]
-        arguments = self._kernel_arguments(step, self.scenario.schedule, hearing, self.stores, states)
-        _run_in_parts(pool, bounds, arguments)
-        return states[2:]
-
-    def _kernel_arguments(
-        self,
-        step: int,
-        schedule: Schedule,
-        hearing: Hearing,
-        stores: Stores,
-        states: tuple[Floats, Floats, Floats, Floats],
-    ) -> tuple[Any, ...]:
-        """Return what :func:`robustness.kernels.steps.advance` takes after the range of runs."""
-        p, q, new_p, new_q = states
-        fleet, graph = self.fleet, self.topology.union
-        return (
-            step, schedule.oldest, min(self.scenario.f, graph.n), fleet.rule.first_order, fleet.rule.strict,
-            stores.hold, stores.remember, fleet.T, p, q, hearing.ring, hearing.channel, hearing.delay, hearing.status,
-            hearing.update, stores.held, stores.kept, stores.memory, stores.stamp, graph.in_indptr, fleet.weight,
-            np.ones(graph.n), fleet.alpha, new_p, new_q,
-        )  # fmt: skip
+        else:
+            runs = len(self.p)
+            bounds = [runs * part // self.jobs for part in range(self.jobs + 1)]
+            oldest = self.scenario.schedule.oldest
+            _run_in_parts(pool, bounds, partial(_advance, step, oldest, self.law, hearing, self.stores, states))
+        return states.new_p, states.new_q
 
     def _trial(self, p: Floats, q: Floats, sent: Floats) -> Floats:
         """Return the positions one step later if everybody updated now and heard ``sent`` at once."""
@@ -193,38 +180,41 @@ class Batch:
             np.ones((1, graph.n), np.uint8),
         )  # fmt: skip
         nothing = stores_for(1, 1, hold=False, remember=False)
-        states = p, q, np.empty_like(p), np.empty_like(q)
+        states = States.after(p, q)
         if self.fleet.rule.update is not None:
             advance_by(self.fleet.rule.update, graph, 0, 0, at_once, nothing, states)
         else:
-            _advance(0, len(p), *self._kernel_arguments(0, Schedule(), at_once, nothing, states))
-        return states[2]
+            _advance(0, 0, self.law, at_once, nothing, states, 0, len(p))
+        return states.new_p
 
 
-def _run_in_parts(pool: Executor | None, bounds: list[int], arguments: tuple[Any, ...]) -> None:
+def _run_in_parts(pool: Executor | None, bounds: list[int], advance: Callable[[int, int], None]) -> None:
     """Advance the runs between consecutive bounds, each part in its own thread; runs are independent."""
     parts = list(pairwise(bounds))
     if pool is None or len(parts) == 1:
         for part in parts:
-            _advance(*part, *arguments)
+            advance(*part)
         return
-    for done in [pool.submit(_advance, *part, *arguments) for part in parts]:
+    for done in [pool.submit(advance, *part) for part in parts]:
         done.result()
 
 
-def _advance(*arguments: Any) -> None:
-    """Call the kernel.
+def _advance(step: int, tau: int, law: Law, hearing: Hearing, stores: Stores, states: States, lo: int, hi: int) -> None:
+    """Advance the runs ``lo .. hi - 1`` by the kernel.
 
     Where it runs as plain Python, it reads the arrays through memory views, whose numbers are Python's own: the same
     arithmetic, in two thirds of the time. numpy would warn of an overflow, which is found afterwards.
     """
     from robustness.kernels import IS_COMPILED
-    from robustness.kernels.steps import advance
+    from robustness.kernels.steps import Turn
 
+    arrays: tuple[Any, ...] = (law, hearing, stores, states)
     if not IS_COMPILED:
-        arguments = tuple(each.data if isinstance(each, np.ndarray) else each for each in arguments)
+        arrays = tuple(
+            each._make(part.data if isinstance(part, np.ndarray) else part for part in each) for each in arrays
+        )
     with np.errstate(over="ignore", invalid="ignore"):
-        advance(*arguments)
+        Turn(step, tau, *arrays).advance(lo, hi)
 
 
 def _states(rows: list[tuple[float, ...]], shape: tuple[int, int], what: str) -> Floats:

@@ -1,23 +1,25 @@
-"""What reaches vehicles at one step, and what they keep from earlier ones: the arrays that rules are fed with."""
+"""The arrays that a step of a batch works on: what vehicles hear, what they keep, how they move, where they are.
+
+Named tuples, which the compiled :class:`robustness.kernels.steps.Turn` takes as they are; B runs, n nodes, A arcs.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from robustness.simulation.dynamics import Floats
 
-__all__ = ["Hearing", "Stores", "stores_for"]
+__all__ = ["Hearing", "Law", "States", "Stores", "stores_for"]
 
 #: The step that a value never heard was sent at.
 _NEVER = -(1 << 62)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Stores:
-    """What vehicles keep from earlier steps, for B runs and A arcs; shape ``(1, 1)`` where nothing is kept.
+class Stores(NamedTuple):
+    """What vehicles keep from earlier steps; shape ``(1, 1)`` where nothing is kept.
 
     Attributes
     ----------
@@ -37,8 +39,7 @@ class Stores:
     stamp: npt.NDArray[np.int64]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Hearing:
+class Hearing(NamedTuple):
     """What reaches the vehicles at one step, and who updates.
 
     Attributes
@@ -56,6 +57,46 @@ class Hearing:
     delay: npt.NDArray[np.int64]
     status: npt.NDArray[np.uint8]
     update: npt.NDArray[np.uint8]
+
+
+class Law(NamedTuple):
+    """How vehicles move: what is the same at every step.
+
+    Attributes
+    ----------
+    f : int
+        How many values the filter drops on either side, less those that were withheld.
+    first_order, strict : bool
+        See :class:`robustness.simulation.update_rules.Rule`.
+    T : float
+        The sampling period.
+    indptr : array, shape ``(n + 1,)``
+        Arcs ``indptr[i] .. indptr[i + 1] - 1`` end in node i.
+    weight : array, shape ``(A,)``
+    alpha : array, shape ``(n,)``
+    """
+
+    f: int
+    first_order: bool
+    strict: bool
+    T: float
+    indptr: npt.NDArray[np.int64]
+    weight: Floats
+    alpha: Floats
+
+
+class States(NamedTuple):
+    """Positions and velocities now, and arrays for those one step later; each of shape ``(B, n)``."""
+
+    p: Floats
+    q: Floats
+    new_p: Floats
+    new_q: Floats
+
+    @classmethod
+    def after(cls, p: Floats, q: Floats) -> States:
+        """Return ``p`` and ``q`` with new arrays for what comes after them."""
+        return cls(p, q, np.empty_like(p), np.empty_like(q))
 
 
 def stores_for(runs: int, arcs: int, *, hold: bool, remember: bool) -> Stores:

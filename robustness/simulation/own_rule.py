@@ -7,8 +7,7 @@ import numpy as np
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
 from robustness.simulation.arguments import is_real
-from robustness.simulation.dynamics import Floats
-from robustness.simulation.hearing import Hearing, Stores
+from robustness.simulation.hearing import Hearing, States, Stores
 from robustness.simulation.update_rules import UpdateFunction
 
 __all__ = ["advance_by", "called"]
@@ -35,11 +34,11 @@ def advance_by(
     tau: int,
     hearing: Hearing,
     stores: Stores,
-    states: tuple[Floats, Floats, Floats, Floats],
+    states: States,
 ) -> None:
     """Advance every run by one step of a user's rule: what the compiled kernel does for the rules of this package.
 
-    Reads ``p`` of ``states = (p, q, new_p, new_q)``, each ``(B, n)``, writes ``new_p``, and 0 to ``new_q``.
+    Reads ``states.p``, writes ``states.new_p``, and 0 to ``states.new_q``.
 
     Notes
     -----

@@ -222,7 +222,7 @@ def _unfiltered(scenario: Scenario, start: Start) -> Outcome:
     from robustness.simulation.observer import Observer
 
     batch = Batch(scenario, [start])
-    batch.scenario = replace(scenario, f=0)
+    batch.law = batch.law._replace(f=0)
     observer = Observer(batch.setting, batch.fleet, scenario, [start], (None,), record=False)
     with ThreadPoolExecutor(1) as pool:
         for step in range(scenario.steps):

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -26,11 +26,13 @@ from robustness.limits import Steps
 if TYPE_CHECKING:
     from robustness.decision.bounds.adjacency import Adjacency
 
-__all__ = ["best_upper_bound", "fewest_exempt", "find_violation"]
+__all__ = ["Target", "best_upper_bound", "fewest_exempt", "find_violation"]
 
 #: Up to this many nodes heuristics are left out: exact search is instant there.
 TINY = 12
 _CLUMP = 24
+#: A node that tabu search has moved stays for this many steps at least.
+_TENURE = 3
 #: Passes over the graph that cutting one node order and peeling both sides of eight cuts take, about.
 _PASSES_OF_A_CUT = 30
 
@@ -183,6 +185,26 @@ def _exempt(graph: Digraph, pair: Pair, r: int) -> int:
     return sum(int((_outside(graph, side) >= r).sum()) for side in pair)
 
 
+class Target(NamedTuple):
+    """What :class:`robustness.kernels.tabu.Tabu` looks for, a pair that violates (r,s), and what its states cost.
+
+    Attributes
+    ----------
+    price : array, shape ``(2, d + 3)``
+        What having x - 1 in-neighbours outside costs a plain node (row 0) and an anchor (row 1).
+    fee : int
+        What a node in neither side costs.
+    least : int
+        Sides get no smaller.
+    """
+
+    r: int
+    s: int
+    price: npt.NDArray[np.int64]
+    fee: int
+    least: int
+
+
 @dataclass(slots=True)
 class _Search:
     """One graph's arrays, random generator and limits, for any number of questions about it."""
@@ -307,7 +329,7 @@ class _Search:
         self, r: int, s: int, restarts: int, cuts: list[npt.NDArray[np.int8]]
     ) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]] | None:
         """Run tabu searches from the cuts, random halves and balls, each of 20 n steps."""
-        from robustness.kernels.tabu import tabu
+        from robustness.kernels.tabu import Tabu
 
         n = self.graph.n
         first, second = np.empty(n, np.uint8), np.empty(n, np.uint8)
@@ -327,7 +349,8 @@ class _Search:
                     return None
                 self.steps.spend(moves * cost)
                 seed = int(self.random.integers(2**31))
-                if tabu(*self.arrays, state, kind, price, r, s, fee, least, moves, 3, seed, first, second):
+                walk = Tabu(self.arrays, Target(r, s, price, fee, least), state, kind)
+                if walk.run(moves, _TENURE, seed, first, second):
                     return first.view(np.bool_), second.view(np.bool_)
         return None
 
@@ -366,7 +389,7 @@ class _Search:
 
 
 def _prices(largest_degree: int, r: int, s: int) -> npt.NDArray[np.int64]:
-    """Return what having ``x - 1`` in-neighbours outside costs a plain node (row 0) and an anchor (row 1)."""
+    """Return the price of :class:`Target`."""
     excess = np.maximum(np.arange(-1, largest_degree + 2) - (r - 1), 0)
     if s == 1:
         return np.stack([excess, 4 * excess])
