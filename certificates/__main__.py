@@ -15,9 +15,8 @@ import sys
 from dataclasses import fields
 from pathlib import Path
 
-from certificates.envelope import MAX_CERTIFICATE_BYTES
 from certificates.errors import MalformedCertificate, RejectedCertificate
-from certificates.file_bytes import read_at_most
+from certificates.file_bytes import certificate_blocks, read_at_most
 from certificates.graph import MAX_GRAPH_BYTES
 from certificates.joint import MAX_SEQUENCE_BYTES, verify_joint
 from certificates.questions import Claim, Question, comparison, verify_any
@@ -73,7 +72,7 @@ def main(arguments: list[str] | None = None) -> int:
 def _verify(command: str, subject: Path, certificate: Path) -> Claim:
     """Return the claim that the files prove, read in the order of the command line."""
     first = read_at_most(subject, max(MAX_GRAPH_BYTES, MAX_SEQUENCE_BYTES))
-    second = read_at_most(certificate, MAX_CERTIFICATE_BYTES)
+    second = certificate_blocks(certificate, _progress if sys.stderr is not None and sys.stderr.isatty() else None)
     match command:
         case "verify-joint":
             return verify_joint(first, second)
@@ -81,6 +80,11 @@ def _verify(command: str, subject: Path, certificate: Path) -> Claim:
             return verify_tolerance(first, second)
         case _:
             return verify_any(first, second)
+
+
+def _progress(done: int, size: int) -> None:
+    """Show on a terminal how much of a certificate has been read; what is printed next writes over it."""
+    sys.stderr.write(f"\r{100 * done // size if size else 0} % of the certificate read\r")
 
 
 def _fail(code: int, message: str) -> int:

@@ -7,30 +7,27 @@ from itertools import pairwise
 from typing import Any
 
 from certificates.errors import MalformedCertificate, Misuse, RejectedCertificate
+from certificates.stream import Blocks, Stream
 from certificates.strict_json import parse
 
 __all__ = [
-    "MAX_CERTIFICATE_BYTES",
-    "MAX_HEADER_BYTES",
     "id_list",
     "id_set",
     "kind_of",
     "open_certificate",
     "require_about",
     "require_keys",
+    "require_no_body",
     "shown",
-    "split_header",
 ]
 
-#: Bytes of a certificate, and of its first line, that are read at most.
-MAX_CERTIFICATE_BYTES = 2**30
-MAX_HEADER_BYTES = 2**26
+_KEYS = "claim evidence"
 
 
 def open_certificate(
-    subject_bytes: bytes, certificate_bytes: bytes, subject: str, formats: Collection[str], keys: str = "claim evidence"
-) -> tuple[dict[str, Any], bytes]:
-    """Return the header and the body of a certificate of one of these formats about a graph or a sequence.
+    subject_bytes: bytes, certificate: Blocks | Stream, subject: str, formats: Collection[str], keys: str = _KEYS
+) -> tuple[dict[str, Any], Stream]:
+    """Return the header and, to be read, the body of a certificate of one of these formats about a graph or a sequence.
 
     The header has exactly these keys beside ``format`` and ``subject``. The digest of the subject, which the header
     names under the key ``subject``, is compared by :func:`require_about`.
@@ -38,16 +35,14 @@ def open_certificate(
     Raises
     ------
     Misuse
-        When an argument is not bytes.
+        When an argument is not bytes; the certificate may also be an iterable of bytes.
     MalformedCertificate
         When it is not a certificate of the formats.
     """
-    if not all(isinstance(data, bytes) for data in (subject_bytes, certificate_bytes)):
+    if not isinstance(subject_bytes, bytes):
         raise Misuse(f"a verifier takes two bytes objects: the {subject} and the certificate")
-    if len(certificate_bytes) > MAX_CERTIFICATE_BYTES:
-        raise MalformedCertificate(f"a certificate has at most {MAX_CERTIFICATE_BYTES} bytes")
-    header, body = split_header(certificate_bytes)
-    document = parse(header, MalformedCertificate, "the certificate")
+    body = Stream.of(certificate)
+    document = parse(body.line(), MalformedCertificate, "the certificate")
     document = require_keys(document, "the certificate", f"format {subject} {keys}")
     found = document["format"]
     if type(found) is not str or found not in formats:
@@ -63,19 +58,17 @@ def require_about(document: dict[str, Any], subject: str, sha256: str) -> None:
         )
 
 
-def split_header(data: bytes) -> tuple[bytes, bytes]:
-    """Return header and body: the first line, and all that follows it."""
-    end = data.find(b"\n", 0, MAX_HEADER_BYTES)
-    if end < 0:
-        raise MalformedCertificate("a certificate begins with one line of JSON that ends with a newline")
-    return data[:end], data[end + 1 :]
-
-
 def require_keys(value: Any, what: str, keys: str) -> dict[str, Any]:
     """Return ``value`` when it is an object with exactly these keys."""
     if not isinstance(value, dict) or set(value) != set(keys.split()):
         raise MalformedCertificate(f"{what} is an object with exactly the keys {keys}")
     return value
+
+
+def require_no_body(body: Stream, what: str) -> None:
+    """Refuse bytes after a header that says all."""
+    if not body.is_over():
+        raise MalformedCertificate(f"{body.left()} bytes follow the header, but {what} has no body")
 
 
 def kind_of(evidence: Any) -> str:

@@ -19,6 +19,7 @@ from typing import Any
 from certificates.envelope import kind_of, open_certificate, require_about, require_keys, shown
 from certificates.errors import MalformedCertificate, MalformedGraph, RejectedCertificate
 from certificates.graph import Label, encode_graph, label_key, valid_labels
+from certificates.stream import Blocks, Stream
 from certificates.strict_json import parse
 from certificates.verification import VerifiedClaim, verify
 
@@ -93,14 +94,14 @@ def encode_sequence(labels: Sequence[Label], steps: Iterable[Iterable[_Arc]], pe
     return json.dumps(document, ensure_ascii=True, separators=(",", ":"), sort_keys=True).encode("ascii")
 
 
-def verify_joint(sequence_bytes: bytes, certificate_bytes: bytes) -> VerifiedJointClaim:
+def verify_joint(sequence_bytes: bytes, certificate_bytes: Blocks | Stream) -> VerifiedJointClaim:
     """Return the claim that ``certificate_bytes`` proves about the sequence in ``sequence_bytes``.
 
     Parameters
     ----------
     sequence_bytes : bytes
         The canonical sequence.
-    certificate_bytes : bytes
+    certificate_bytes : bytes or iterable of bytes
         A joint certificate as docs/certificate-format.md defines it.
 
     Raises
@@ -112,7 +113,8 @@ def verify_joint(sequence_bytes: bytes, certificate_bytes: bytes) -> VerifiedJoi
     RejectedCertificate
         When the certificate does not prove its claim about this sequence.
     """
-    document, body = open_certificate(sequence_bytes, certificate_bytes, "sequence", [FORMAT])
+    document, stream = open_certificate(sequence_bytes, certificate_bytes, "sequence", [FORMAT])
+    body = stream.rest()
     claim = require_keys(document["claim"], "the claim", "property r s window verdict")
     sequence = _decode_sequence(sequence_bytes)
     require_about(document, "sequence", sequence.sha256)

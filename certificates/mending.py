@@ -26,6 +26,7 @@ from typing import Any
 from certificates.envelope import id_set, open_certificate, require_about, require_keys
 from certificates.errors import MalformedCertificate, RejectedCertificate
 from certificates.graph import CanonicalGraph, decode_graph, digest, encode_graph
+from certificates.stream import Blocks, Stream
 from certificates.tolerance import check_sets, verify_tolerance
 from certificates.verification import check_violation, verify
 
@@ -76,7 +77,7 @@ class VerifiedMendingClaim:
         )
 
 
-def verify_mending(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedMendingClaim:
+def verify_mending(graph_bytes: bytes, certificate_bytes: Blocks | Stream) -> VerifiedMendingClaim:
     """Return the claim that ``certificate_bytes`` proves about the graph in ``graph_bytes``, before mending.
 
     Parameters
@@ -96,7 +97,7 @@ def verify_mending(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedMend
         When the certificate does not prove its claim about this graph.
     """
     keys = "claim actions pairs covers lengths"
-    document, body = open_certificate(graph_bytes, certificate_bytes, "graph", [FORMAT], keys)
+    document, stream = open_certificate(graph_bytes, certificate_bytes, "graph", [FORMAT], keys)
     claim = require_keys(document["claim"], "the claim", "parts cost least")
     graph = decode_graph(graph_bytes)
     require_about(document, "graph", graph.sha256)
@@ -113,7 +114,7 @@ def verify_mending(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedMend
     for pair in pairs:
         _check_pair(graph, parts, pair)
     _check_covers(graph, parts, _list(document["covers"], "covers"))
-    tree_nodes = _check_parts(mended, parts, document["lengths"], body)
+    tree_nodes = _check_parts(mended, parts, document["lengths"], stream.rest())
     return VerifiedMendingClaim(
         " and ".join(words) or "anything", claim["cost"], claim["least"], links, len(pairs),
         graph.sha256, graph.n, graph.arc_count, "" if mended is None else digest(mended), tree_nodes,

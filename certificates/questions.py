@@ -12,12 +12,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 
-from certificates.envelope import split_header
 from certificates.errors import MalformedCertificate
 from certificates.joint import FORMAT as JOINT_FORMAT
 from certificates.joint import VerifiedJointClaim, verify_joint
 from certificates.mending import FORMAT as MENDING_FORMAT
 from certificates.mending import VerifiedMendingClaim, verify_mending
+from certificates.stream import Blocks, Stream
 from certificates.strict_json import parse
 from certificates.tolerance import FORMATS as TOLERANCE_FORMATS
 from certificates.tolerance import VerifiedToleranceClaim, verify_tolerance
@@ -27,7 +27,7 @@ __all__ = ["Claim", "Question", "comparison", "format_of", "verify_any"]
 
 Claim = VerifiedClaim | VerifiedJointClaim | VerifiedToleranceClaim | VerifiedMendingClaim
 
-_VERIFIERS: dict[str, Callable[[bytes, bytes], Claim]] = {
+_VERIFIERS: dict[str, Callable[[bytes, Stream], Claim]] = {
     FORMAT: verify,
     JOINT_FORMAT: verify_joint,
     **dict.fromkeys(TOLERANCE_FORMATS, verify_tolerance),
@@ -72,28 +72,29 @@ class Question:
         return f"a question about malicious nodes names {', '.join(missing)} as well" if about and missing else ""
 
 
-def format_of(certificate_bytes: bytes) -> str:
-    """Return the format that the first line of a certificate names.
+def format_of(certificate: bytes | Stream) -> str:
+    """Return the format that the first line of a certificate names; of a stream nothing is taken.
 
     Raises
     ------
     MalformedCertificate
         When there is no such line, or no such format.
     """
-    document = parse(split_header(certificate_bytes)[0], MalformedCertificate, "the certificate")
+    document = parse(Stream.of(certificate).line(take=False), MalformedCertificate, "the certificate")
     found = document.get("format") if isinstance(document, dict) else None
     if type(found) is not str or found not in _VERIFIERS:
         raise MalformedCertificate(f"the format of a certificate is one of {', '.join(_VERIFIERS)}")
     return found
 
 
-def verify_any(subject_bytes: bytes, certificate_bytes: bytes) -> Claim:
+def verify_any(subject_bytes: bytes, certificate_bytes: Blocks | Stream) -> Claim:
     """Verify a certificate of whichever kind: of robustness, of joint robustness, of what malicious nodes can do, of
     mending.
 
     ``subject_bytes`` is the canonical graph, or the canonical sequence for joint robustness.
     """
-    return _VERIFIERS[format_of(certificate_bytes)](subject_bytes, certificate_bytes)
+    stream = Stream.of(certificate_bytes)
+    return _VERIFIERS[format_of(stream)](subject_bytes, stream)
 
 
 def comparison(claim: Claim, question: Question) -> tuple[bool, str]:

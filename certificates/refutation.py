@@ -5,6 +5,7 @@ from __future__ import annotations
 from certificates.graph import CanonicalGraph
 from certificates.masks import Contradiction
 from certificates.rules import Question, State, excludes, settle
+from certificates.stream import Blocks, Stream
 from certificates.walk import Walk
 
 __all__ = ["SATISFIED", "check_refutation"]
@@ -13,7 +14,7 @@ __all__ = ["SATISFIED", "check_refutation"]
 SATISFIED, MEMBER = 0, 1
 
 
-def check_refutation(graph: CanonicalGraph, r: int, s: int, body: bytes) -> int:
+def check_refutation(graph: CanonicalGraph, r: int, s: int, body: Blocks | Stream) -> int:
     """Return the number of tree nodes of a transcript that refutes every violating pair; raise otherwise.
 
     Time is linear in the bytes of the transcript, with a factor polynomial in n, and bounded by ``masks.MAX_LOOKS``;
@@ -35,7 +36,7 @@ class _Replay(Walk[State]):
 
     opcodes = 10
 
-    def __init__(self, question: Question, n: int, body: bytes) -> None:
+    def __init__(self, question: Question, n: int, body: Blocks | Stream) -> None:
         super().__init__(n, body)
         self.question = question
 

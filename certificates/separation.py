@@ -5,6 +5,7 @@ from __future__ import annotations
 from certificates.graph import CanonicalGraph
 from certificates.masks import Contradiction
 from certificates.roles import Roles, Threat, excludes, settle
+from certificates.stream import Blocks, Stream
 from certificates.walk import Walk
 
 __all__ = ["check_separation"]
@@ -13,7 +14,7 @@ __all__ = ["check_separation"]
 NORMAL, MALICIOUS = 0, 1
 
 
-def check_separation(graph: CanonicalGraph, f: int, faces: int, bound: str, body: bytes) -> int:
+def check_separation(graph: CanonicalGraph, f: int, faces: int, bound: str, body: Blocks | Stream) -> int:
     """Return the number of tree nodes of a transcript that refutes every solution; raise otherwise.
 
     Time, memory and errors are those of :func:`certificates.refutation.check_refutation`.
@@ -27,7 +28,7 @@ class _Replay(Walk[Roles]):
 
     opcodes = 8
 
-    def __init__(self, threat: Threat, n: int, body: bytes) -> None:
+    def __init__(self, threat: Threat, n: int, body: Blocks | Stream) -> None:
         super().__init__(n, body)
         self.threat = threat
 

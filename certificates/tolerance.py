@@ -13,10 +13,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from certificates.envelope import id_set, kind_of, open_certificate, require_about, require_keys, shown
+from certificates.envelope import id_set, kind_of, open_certificate, require_about, require_keys, require_no_body, shown
 from certificates.errors import MalformedCertificate, RejectedCertificate
 from certificates.graph import CanonicalGraph, decode_graph, encode_graph
 from certificates.separation import check_separation
+from certificates.stream import Blocks, Stream
 from certificates.verification import verify
 
 __all__ = [
@@ -64,14 +65,14 @@ class VerifiedToleranceClaim:
         )
 
 
-def verify_tolerance(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedToleranceClaim:
+def verify_tolerance(graph_bytes: bytes, certificate_bytes: Blocks | Stream) -> VerifiedToleranceClaim:
     """Return the claim that ``certificate_bytes`` proves about the graph in ``graph_bytes``.
 
     Parameters
     ----------
     graph_bytes : bytes
         The canonical graph, or a node-link JSON document of it.
-    certificate_bytes : bytes
+    certificate_bytes : bytes or iterable of bytes
         A tolerance certificate as docs/certificate-format.md defines it.
 
     Raises
@@ -92,8 +93,7 @@ def verify_tolerance(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedTo
     match verdict, kind:
         case "apart", "sets":
             check_sets(graph, f, faces, bound, require_keys(evidence, "the evidence", "kind M S1 S2"))
-            if body:
-                raise MalformedCertificate(f"{len(body)} bytes follow the header, but sets have no body")
+            require_no_body(body, "evidence of kind 'sets'")
         case "together", "robust":
             require_keys(evidence, "the evidence", "kind")
             used, tree_nodes = 1, _check_robust(_canonical(graph), body, 2 * f + 1)
@@ -142,7 +142,7 @@ def check_sets(graph: CanonicalGraph, f: int, faces: int, bound: str, evidence: 
                 raise RejectedCertificate(f"node {i} hears more than f = {f} nodes outside its side", "sets")
 
 
-def _check_robust(graph_bytes: bytes, certificate: bytes, r: int) -> int:
+def _check_robust(graph_bytes: bytes, certificate: Stream, r: int) -> int:
     """The ordinary certificate proves r-robustness; return the tree nodes replayed.
 
     A (2f+1)-robust graph keeps together: of any two disjoint nonempty N1, N2 one has a node that hears 2f + 1 nodes

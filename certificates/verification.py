@@ -6,10 +6,20 @@ from dataclasses import dataclass
 from typing import Any
 
 from certificates.derivation import Derivation
-from certificates.envelope import id_list, id_set, kind_of, open_certificate, require_about, require_keys, shown
+from certificates.envelope import (
+    id_list,
+    id_set,
+    kind_of,
+    open_certificate,
+    require_about,
+    require_keys,
+    require_no_body,
+    shown,
+)
 from certificates.errors import MalformedCertificate, RejectedCertificate
 from certificates.graph import CanonicalGraph, decode_graph
 from certificates.refutation import check_refutation
+from certificates.stream import Blocks, Stream
 
 __all__ = ["FORMAT", "VerifiedClaim", "check_violation", "verify"]
 
@@ -38,15 +48,15 @@ class VerifiedClaim:
         )
 
 
-def verify(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedClaim:
+def verify(graph_bytes: bytes, certificate_bytes: Blocks | Stream) -> VerifiedClaim:
     """Return the claim that ``certificate_bytes`` proves about the graph in ``graph_bytes``.
 
     Parameters
     ----------
     graph_bytes : bytes
         The canonical graph, or a node-link JSON document of it.
-    certificate_bytes : bytes
-        A certificate as docs/certificate-format.md defines it.
+    certificate_bytes : bytes or iterable of bytes
+        A certificate as docs/certificate-format.md defines it; in pieces it is read as it is needed, and not kept.
 
     Raises
     ------
@@ -85,8 +95,8 @@ def verify(graph_bytes: bytes, certificate_bytes: bytes) -> VerifiedClaim:
             raise MalformedCertificate(f"there is no evidence of kind {shown(kind)} for the verdict {verdict!r}")
         case _:
             raise MalformedCertificate(f"a verdict is 'robust' or 'not-robust', not {shown(verdict)}")
-    if kind == "violation" and body:
-        raise MalformedCertificate(f"{len(body)} bytes follow the header, but evidence of kind 'violation' has no body")
+    if kind == "violation":
+        require_no_body(body, "evidence of kind 'violation'")
     return VerifiedClaim(verdict, r, s, kind, graph.sha256, graph.n, graph.arc_count, tree_nodes)
 
 
@@ -116,7 +126,7 @@ def check_violation(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, A
         )
 
 
-def _check_direct(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any], body: bytes) -> int:
+def _check_direct(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any], body: Stream) -> int:
     """Evidence that needs no other: a degree bound or a refutation; return the tree nodes replayed.
 
     degree  Lemma 3: in-degrees of at least floor(n/2) + r - 1 make the graph (r,s)-robust for every s, since the
@@ -127,8 +137,7 @@ def _check_direct(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any
     least = min(map(len, graph.hears))
     if evidence["kind"] != "degree":
         raise MalformedCertificate(f"a proof is of kind 'degree' or 'refutation', not {shown(evidence['kind'])}")
-    if body:
-        raise MalformedCertificate(f"{len(body)} bytes follow the header, but evidence of kind 'degree' has no body")
+    require_no_body(body, "evidence of kind 'degree'")
     if least < graph.n // 2 + r - 1:
         raise RejectedCertificate(
             f"the least in-degree {least} is below floor(n/2) + r - 1 = {graph.n // 2 + r - 1}", "degree"
@@ -136,7 +145,7 @@ def _check_direct(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any
     return 0
 
 
-def _check_growth(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any], body: bytes) -> int:
+def _check_growth(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any], body: Stream) -> int:
     """Lemma 4: a node that hears at least r + s - 1 nodes of an (r,s)-robust graph can be added to it.
 
     The seed is the subgraph induced on ``seed``, proven by ``proof`` (of kind degree or refutation); ``order`` lists
@@ -169,7 +178,7 @@ def _check_growth(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any
     return tree_nodes
 
 
-def _check_derivation(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any], body: bytes) -> int:
+def _check_derivation(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any], body: Stream) -> int:
     """A seed proven by ``proof``, steps that make the graph of it, and ``ids``: which node of it each node made is."""
     seed = require_keys(evidence["seed"], "the seed", "nodes arcs r s")
     proof = require_keys(evidence["proof"], "the proof of the seed", "kind")

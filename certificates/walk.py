@@ -13,6 +13,7 @@ from typing import Generic, TypeVar
 
 from certificates.errors import RejectedCertificate
 from certificates.masks import Contradiction
+from certificates.stream import Blocks, Stream
 
 __all__ = ["BRANCH", "EXCLUDE", "PROPAGATE", "ROOT", "Walk"]
 
@@ -23,15 +24,14 @@ S = TypeVar("S")
 
 
 class Walk(ABC, Generic[S]):
-    """One transcript being read: the bytes, the place in them, and the states of one kind of search."""
+    """One transcript being read, and the states of one kind of search."""
 
     #: The number of opcodes.
     opcodes: int
 
-    def __init__(self, n: int, body: bytes) -> None:
+    def __init__(self, n: int, body: Blocks | Stream) -> None:
         self.n = n
-        self.body = body
-        self.place = 0
+        self.body = Stream.of(body)
         self.nodes = 0
 
     @abstractmethod
@@ -85,32 +85,27 @@ class Walk(ABC, Generic[S]):
                 self.mirror(false, node)
             waiting.append((false, opcode == ROOT))
             symmetric = False
-        if self.place != len(self.body):
-            raise self.reject(f"{len(self.body) - self.place} bytes follow the complete refutation")
+        if not self.body.is_over():
+            raise self.reject(f"{self.body.left()} bytes follow the complete refutation")
         return self.nodes
 
     def exclusions(self, state: S) -> None:
         """Read the runs of EXCLUDE steps, each followed by PROPAGATE, that come before a branch."""
-        while EXCLUDE <= self.peek() < self.opcodes:
-            while EXCLUDE <= (opcode := self.peek()) < self.opcodes:
-                self.place += 1
+        while EXCLUDE <= self.body.peek() < self.opcodes:
+            while EXCLUDE <= (opcode := self.body.peek()) < self.opcodes:
+                self.body.next()
                 self.exclude(state, opcode - EXCLUDE)
             if self.number(self.opcodes) != PROPAGATE:
                 raise self.reject("EXCLUDE steps without a PROPAGATE after them")
             self.settle(state)
 
-    def peek(self) -> int:
-        """Return the byte that comes next, or -1 at the end."""
-        return self.body[self.place] if self.place < len(self.body) else -1
-
     def number(self, limit: int) -> int:
         """Read one number below ``limit``: seven bits a byte, low first, shortest spelling."""
         value = shift = 0
         while True:
-            byte = self.peek()
+            byte = self.body.next()
             if byte < 0:
                 raise self.reject("the transcript ends in the middle of the tree")
-            self.place += 1
             value |= (byte & 127) << shift
             if byte < 128:
                 break
@@ -123,4 +118,4 @@ class Walk(ABC, Generic[S]):
 
     def reject(self, why: str) -> RejectedCertificate:
         """Return the error that says what is wrong, and where."""
-        return RejectedCertificate(f"refutation, byte {self.place}, tree node {self.nodes}: {why}", "refutation")
+        return RejectedCertificate(f"refutation, byte {self.body.place}, tree node {self.nodes}: {why}", "refutation")

@@ -26,14 +26,14 @@ _COUNTEREXAMPLE = "counterexample.json"
 
 def challenge_certificate(console: Console, query: Query, asked: Simulation) -> ExitCode:
     """Put a certificate to the test."""
-    from certificates.envelope import MAX_CERTIFICATE_BYTES
+    from certificates.file_bytes import certificate_blocks
+    from certificates.stream import Stream
     from robustness.simulation.validate import validate_certificate
-    from robustness.whole_file import read_at_most
 
     graph = load_graph(str(asked.source))
     place = Path(str(asked.certificate))
     try:
-        evidence = read_at_most(place, MAX_CERTIFICATE_BYTES)
+        evidence = Stream(certificate_blocks(place)).rest()
     except OSError as problem:
         console.error(f"error: cannot read {place}: {problem.strerror}")
         return ExitCode.BAD_INPUT

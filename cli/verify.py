@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,11 +11,12 @@ import click
 from .choices import FACES
 from .exit_codes import ExitCode
 from .options import asked_reading, graph_argument, json_option, load_graph
-from .output import Console
+from .output import Console, ProgressLine
 from .query import speaking
 
 if TYPE_CHECKING:
     from certificates.questions import Claim
+    from certificates.stream import Stream
     from robustness.mending import Confirmation
 
 __all__ = ["SCHEMA", "command"]
@@ -71,22 +73,20 @@ def command(
     answers the question. 10: it does not. 3: a file is malformed. 30: HiGHS did not decide in time. Without a question
     the claim is printed, and said to be compared with none.
     """
-    from certificates.envelope import MAX_CERTIFICATE_BYTES
-    from certificates.questions import Question, comparison
-    from robustness.errors import UnreadableTopology
-    from robustness.whole_file import read_at_most
+    from certificates.mending import FORMAT as MENDING_FORMAT
+    from certificates.questions import Question, comparison, format_of
+    from certificates.stream import Stream
 
     faces, bound = FACES[model] if model is not None else (None, None)
     question = Question(expect, r, s, window, f, faces, bound)
     if question.gap():
         raise click.UsageError("a question about malicious nodes takes --expect together or apart, -f and --model.")
-    try:
-        data = read_at_most(certificate, MAX_CERTIFICATE_BYTES)
-    except OSError as problem:
-        raise UnreadableTopology(f"{certificate}: cannot be read: {problem.strerror}") from None
-    claim = _verified(source, data) if checker == "python" else _verified_formally(source, data)
+    with ProgressLine(console) as line:
+        stream = Stream(_pieces(certificate, line))
+        whole = stream.rest() if checker == "verified" or format_of(stream) == MENDING_FORMAT else b""
+        claim = _verified_formally(source, whole) if checker == "verified" else _verified(source, whole or stream)
     answers, how = comparison(claim, question)
-    confirmation = _confirmed(source, data, timeout) if answers and hasattr(claim, "least") else None
+    confirmation = _confirmed(source, whole, timeout) if answers and hasattr(claim, "least") else None
     if confirmation is not None:
         _tell_confirmation(ctx, console, confirmation, how, as_json=as_json)
     if as_json:
@@ -100,16 +100,29 @@ def command(
     ctx.exit(ExitCode.DONE)
 
 
-def _verified(source: str, certificate: bytes) -> Claim:
+def _pieces(certificate: Path, line: ProgressLine) -> Iterator[bytes]:
+    """Yield the certificate as it is asked for, and tell how much of it has been."""
+    from certificates.file_bytes import certificate_blocks
+    from robustness.errors import UnreadableTopology
+
+    def tell(done: int, size: int) -> None:
+        line.note = f"{100 * done // size if size else 0} % of the certificate verified"
+        line.tick()
+
+    try:
+        yield from certificate_blocks(certificate, tell)
+    except OSError as problem:
+        raise UnreadableTopology(f"{certificate}: cannot be read: {problem.strerror}") from None
+
+
+def _verified(source: str, certificate: bytes | Stream) -> Claim:
     """Return what the certificate proves about the graph or the sequence of graphs that ``source`` names."""
     from certificates.joint import FORMAT as JOINT_FORMAT
-    from certificates.mending import FORMAT as MENDING_FORMAT
     from certificates.questions import format_of, verify_any
 
-    kind = format_of(certificate)
-    if kind == JOINT_FORMAT:
+    if format_of(certificate) == JOINT_FORMAT:
         return verify_any(_sequence_bytes(source), certificate)
-    if kind == MENDING_FORMAT:
+    if isinstance(certificate, bytes):
         return verify_any(_mended_bytes(source, certificate), certificate)
     return verify_any(load_graph(source).canonical_bytes(), certificate)
 

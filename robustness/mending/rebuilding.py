@@ -30,10 +30,10 @@ from dataclasses import dataclass
 from datetime import timedelta
 from typing import Any
 
-from certificates.envelope import split_header
 from certificates.errors import MalformedCertificate, RejectedCertificate
 from certificates.graph import decode_graph
 from certificates.mending import VerifiedMendingClaim, verify_mending
+from certificates.stream import Stream
 from certificates.strict_json import parse
 from robustness.digraph import Digraph
 from robustness.limits import Limits
@@ -109,7 +109,7 @@ def confirm_least(graph_bytes: bytes, certificate_bytes: bytes, *, time_limit: f
     claim = verify_mending(graph_bytes, certificate_bytes)
     if claim.least == 0:
         return Confirmation(claim, LeastVerdict.CONFIRMED)
-    document = parse(split_header(certificate_bytes)[0], MalformedCertificate, "the certificate")
+    document = parse(Stream(certificate_bytes).line(), MalformedCertificate, "the certificate")
     rebuilt = _Rebuilt(decode_graph(graph_bytes).hears, document)
     return rebuilt.cheaper_than(claim, limits)
 
@@ -120,7 +120,7 @@ def subject_of(graph: Digraph, certificate_bytes: bytes) -> Digraph:
     The graph itself, or, when it is a certificate of thinning, its nodes without any link: then every action is one of
     the graph's own links.
     """
-    document = parse(split_header(certificate_bytes)[0], MalformedCertificate, "the certificate")
+    document = parse(Stream(certificate_bytes).line(), MalformedCertificate, "the certificate")
     empty = Digraph(graph.labels, [], directed=graph.directed)
     if not isinstance(document, dict) or document.get("graph") != empty.sha256 or graph.arc_count == 0:
         return graph

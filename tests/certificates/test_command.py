@@ -126,9 +126,9 @@ def test_questions_that_the_programs_do_not_ask() -> None:
 def test_no_more_than_the_limits_is_read(
     files: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(program, "MAX_CERTIFICATE_BYTES", -1)
+    monkeypatch.setattr("certificates.stream.MAX_CERTIFICATE_BYTES", 10)
     assert program.main(["verify", str(files / "graph"), str(files / "robust")]) == 3
-    assert "one line of JSON" in capsys.readouterr().err
+    assert "at most 10 bytes" in capsys.readouterr().err
 
 
 def test_as_a_program(files: Path, monkeypatch: pytest.MonkeyPatch) -> None:

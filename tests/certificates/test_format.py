@@ -15,9 +15,9 @@ from certificates import (
     Misuse,
     RejectedCertificate,
     VerifiedClaim,
-    envelope,
     graph,
     masks,
+    stream,
     verify,
 )
 from certificates.graph import decode_graph, label_key
@@ -182,14 +182,14 @@ class TestHeader:
             verify(empty.canonical_bytes(), certificate(empty, 1, 1, evidence={"kind": "degree"}))
 
     def test_size_limits(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr(envelope, "MAX_CERTIFICATE_BYTES", len(PROOF) - 1)
+        monkeypatch.setattr(stream, "MAX_CERTIFICATE_BYTES", len(PROOF) - 1)
         with pytest.raises(MalformedCertificate, match="at most"):
             verify(CANONICAL, PROOF)
-        monkeypatch.setattr(envelope, "MAX_CERTIFICATE_BYTES", len(PROOF))
-        monkeypatch.setattr(envelope, "MAX_HEADER_BYTES", PROOF.index(b"\n"))
+        monkeypatch.setattr(stream, "MAX_CERTIFICATE_BYTES", len(PROOF))
+        monkeypatch.setattr(stream, "MAX_HEADER_BYTES", PROOF.index(b"\n"))
         with pytest.raises(MalformedCertificate, match="one line"):
             verify(CANONICAL, PROOF)
-        monkeypatch.setattr(envelope, "MAX_HEADER_BYTES", len(PROOF))
+        monkeypatch.setattr(stream, "MAX_HEADER_BYTES", len(PROOF))
         monkeypatch.setattr(masks, "MAX_NODES", 4)
         with pytest.raises(MalformedCertificate, match="at most 4 nodes"):
             verify(CANONICAL, PROOF)

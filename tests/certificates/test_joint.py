@@ -17,8 +17,8 @@ from certificates import (
     MalformedGraph,
     Misuse,
     RejectedCertificate,
-    envelope,
     joint,
+    stream,
     verify,
     verify_joint,
 )
@@ -391,7 +391,7 @@ def test_limits(monkeypatch: pytest.MonkeyPatch) -> None:
         ("MAX_CERTIFICATE_BYTES", "at most 4 bytes"),
     ):
         with monkeypatch.context() as patch:
-            patch.setattr(envelope if name == "MAX_CERTIFICATE_BYTES" else joint, name, 4)
+            patch.setattr(stream if name == "MAX_CERTIFICATE_BYTES" else joint, name, 4)
             with pytest.raises(MalformedCertificate, match=message):
                 verify_joint(DATA, ROBUST)
 

@@ -291,7 +291,7 @@ def test_mutations_never_prove_more() -> None:
 def test_misuse_and_size(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(Misuse):
         verify_mending("graph", b"")  # type: ignore[arg-type]
-    monkeypatch.setattr("certificates.envelope.MAX_CERTIFICATE_BYTES", 10)
+    monkeypatch.setattr("certificates.stream.MAX_CERTIFICATE_BYTES", 10)
     with pytest.raises(MalformedCertificate, match="at most"):
         verify_mending(PATH.canonical_bytes(), made())
 

@@ -129,7 +129,7 @@ class TestMalformed:
             (claim(bound="some"), TRAP, b"", {}, "a bound is"),
             (claim(bound=[]), TRAP, b"", {}, "a bound is"),
             (claim(verdict="robust"), TRAP, b"", {}, "a verdict is"),
-            (claim(), TRAP, b"x", {}, "sets have no body"),
+            (claim(), TRAP, b"x", {}, "'sets' has no body"),
             (claim(), {"kind": "robust"}, b"", {}, "no evidence of kind 'robust'"),
             (claim(verdict="together"), TRAP, b"", {}, "no evidence of kind 'sets'"),
             (claim(), [], b"", {}, "'kind'"),
@@ -150,7 +150,7 @@ class TestMalformed:
             verify_tolerance(WHEEL.canonical_bytes(), b"{}")
 
     def test_too_long(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr("certificates.envelope.MAX_CERTIFICATE_BYTES", 10)
+        monkeypatch.setattr("certificates.stream.MAX_CERTIFICATE_BYTES", 10)
         with pytest.raises(MalformedCertificate, match="at most 10 bytes"):
             verify_tolerance(WHEEL.canonical_bytes(), make(WHEEL, claim(), TRAP))
 
