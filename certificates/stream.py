@@ -12,6 +12,9 @@ __all__ = ["MAX_CERTIFICATE_BYTES", "MAX_HEADER_BYTES", "Blocks", "Stream"]
 MAX_CERTIFICATE_BYTES = 2**30
 MAX_HEADER_BYTES = 2**26
 
+#: Bytes of a tree that is listed at least.
+_LEAST_TREE = 2**12
+
 #: How a certificate is handed in: whole, or in pieces of any size, which are asked for as they are needed.
 Blocks = bytes | Iterable[bytes]
 
@@ -24,6 +27,13 @@ class Stream:
         if isinstance(given, bytes | str) or not isinstance(given, Iterable):
             given = (given,)  # what is no bytes is refused as it comes
         self._blocks: Iterator[object] = iter(given)
+        #: Where trees begin that are somebody's share, their lengths, and whether it is the own: none, but for
+        #: :mod:`certificates.shares`.
+        self.share: dict[int, tuple[int, bool]] = {}
+        #: Tree nodes in own trees.
+        self.own_nodes = 0
+        #: Beginnings and lengths of trees that were walked through, for those who list them; short ones are left out.
+        self.trees: list[tuple[int, int]] | None = None
         self._block = b""
         self._at = self._before = self._total = 0
 
@@ -31,6 +41,14 @@ class Stream:
     def of(cls, data: Blocks | Stream) -> Stream:
         """Return the stream of a certificate, or the stream itself."""
         return data if isinstance(data, Stream) else cls(data)
+
+    @classmethod
+    def whole(cls, data: Blocks | Stream) -> Stream:
+        """Return the same, of which no part is left to others."""
+        stream = cls.of(data)
+        if stream.share:
+            raise Misuse("a share of a certificate is verified by certificates.shares alone")
+        return stream
 
     def __iter__(self) -> Iterator[bytes]:
         """Take what is left, in pieces."""
@@ -68,6 +86,11 @@ class Stream:
         """Pass over so many bytes, or to the end."""
         while count and not self.is_over():
             count -= len(self._take(self._at + count))
+
+    def note(self, start: int) -> None:
+        """List a tree that ends here, if trees are listed."""
+        if self.trees is not None and self.place - start >= _LEAST_TREE:
+            self.trees.append((start, self.place - start))
 
     def rest(self) -> bytes:
         """Take all that is left, whole."""

@@ -18,7 +18,7 @@ from certificates.errors import MalformedCertificate, RejectedCertificate
 from certificates.graph import CanonicalGraph, decode_graph, encode_graph
 from certificates.separation import check_separation
 from certificates.stream import Blocks, Stream
-from certificates.verification import verify
+from certificates.verification import prove
 
 __all__ = [
     "FORMAT",
@@ -26,6 +26,7 @@ __all__ = [
     "FORMAT_WITH_REFUTATIONS",
     "VerifiedToleranceClaim",
     "check_sets",
+    "prove_tolerance",
     "verify_tolerance",
 ]
 
@@ -84,7 +85,12 @@ def verify_tolerance(graph_bytes: bytes, certificate_bytes: Blocks | Stream) -> 
     RejectedCertificate
         When the certificate does not prove its claim about this graph.
     """
-    document, body = open_certificate(graph_bytes, certificate_bytes, "graph", FORMATS)
+    return prove_tolerance(graph_bytes, Stream.whole(certificate_bytes))
+
+
+def prove_tolerance(graph_bytes: bytes, certificate: Stream) -> VerifiedToleranceClaim:
+    """Do what :func:`verify_tolerance` does; see :func:`certificates.verification.prove`."""
+    document, body = open_certificate(graph_bytes, certificate, "graph", FORMATS)
     f, faces, bound, verdict = _claim(require_keys(document["claim"], "the claim", "f faces bound verdict"))
     graph = decode_graph(graph_bytes)
     require_about(document, "graph", graph.sha256)
@@ -148,7 +154,7 @@ def _check_robust(graph_bytes: bytes, certificate: Stream, r: int) -> int:
     A (2f+1)-robust graph keeps together: of any two disjoint nonempty N1, N2 one has a node that hears 2f + 1 nodes
     outside its own. At most f of these are in M, however M is bounded, so f + 1 lie outside ``N_k | M``, hence S_k.
     """
-    claim = verify(graph_bytes, certificate)
+    claim = prove(graph_bytes, certificate)
     if (claim.verdict, claim.r, claim.s) != ("robust", r, 1):
         raise RejectedCertificate(f"the ordinary certificate proves another claim than {r}-robustness", "other-claim")
     return claim.tree_nodes

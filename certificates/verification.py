@@ -21,7 +21,7 @@ from certificates.graph import CanonicalGraph, decode_graph
 from certificates.refutation import check_refutation
 from certificates.stream import Blocks, Stream
 
-__all__ = ["FORMAT", "VerifiedClaim", "check_violation", "verify"]
+__all__ = ["FORMAT", "VerifiedClaim", "check_violation", "prove", "verify"]
 
 FORMAT = "robustness/certificate/1"
 
@@ -67,7 +67,12 @@ def verify(graph_bytes: bytes, certificate_bytes: Blocks | Stream) -> VerifiedCl
     RejectedCertificate
         When the certificate does not prove its claim about this graph.
     """
-    document, body = open_certificate(graph_bytes, certificate_bytes, "graph", [FORMAT])
+    return prove(graph_bytes, Stream.whole(certificate_bytes))
+
+
+def prove(graph_bytes: bytes, certificate: Stream) -> VerifiedClaim:
+    """Do what :func:`verify` does; a stream may leave parts to others, and then nothing is proven by this one."""
+    document, body = open_certificate(graph_bytes, certificate, "graph", [FORMAT])
     claim = require_keys(document["claim"], "the claim", "property r s verdict")
     evidence = document["evidence"]
     graph = decode_graph(graph_bytes)

@@ -32,6 +32,7 @@ class Walk(ABC, Generic[S]):
     def __init__(self, n: int, body: Blocks | Stream) -> None:
         self.n = n
         self.body = Stream.of(body)
+        self.share = self.body.share
         self.nodes = 0
 
     @abstractmethod
@@ -51,24 +52,33 @@ class Walk(ABC, Generic[S]):
         """Make the false child of a ROOT, in which ``node`` is gone from side 1, symmetric again."""
 
     def run(self, state: S) -> int:
+        """Walk the whole tree, from its first, symmetric ``state``, and return the number of its nodes."""
+        self.tree(state, symmetric=True)
+        if not self.body.is_over():
+            raise self.reject(f"{self.body.left()} bytes follow the complete refutation")
+        return self.nodes
+
+    def tree(self, state: S, symmetric: bool) -> None:
         """Walk the tree below ``state`` in preorder, with an explicit stack of the false children to come.
 
-        Returns the number of tree nodes. A tree is at most as deep as there are literals.
+        A tree is at most as deep as there are literals.
 
         ROOT: a symmetric state has the same sets on both sides, and what it stands for may be swapped. So when nothing
         has the node satisfied on side 1, nothing has it on side 2 either: the false child loses it on both sides.
         """
-        symmetric = True
-        waiting: list[tuple[S, bool]] = []
+        waiting: list[tuple[S, bool, int]] = []
         while True:
             self.nodes += 1
             try:
                 self.settle(state)
+                if self.body.place in self.share:
+                    self.cube(state, symmetric)
                 self.exclusions(state)
             except Contradiction:
                 if not waiting:
                     break
-                state, symmetric = waiting.pop()
+                state, symmetric, start = waiting.pop()
+                self.body.note(start)
                 continue
             opcode = self.number(EXCLUDE)
             if opcode == PROPAGATE:
@@ -83,11 +93,22 @@ class Walk(ABC, Generic[S]):
             state, false = children
             if opcode == ROOT:
                 self.mirror(false, node)
-            waiting.append((false, opcode == ROOT))
+            waiting.append((false, opcode == ROOT, self.body.place))
             symmetric = False
-        if not self.body.is_over():
-            raise self.reject(f"{self.body.left()} bytes follow the complete refutation")
-        return self.nodes
+
+    def cube(self, state: S, symmetric: bool) -> None:
+        """Walk a tree that is this share's own, or leave it to whose it is: :mod:`certificates.shares`."""
+        start, (length, is_own) = self.body.place, self.share.pop(self.body.place)
+        self.nodes -= 1
+        if is_own:
+            before = self.nodes
+            self.tree(state, symmetric)
+            self.body.own_nodes += self.nodes - before
+        else:
+            self.body.skip(length)
+        if self.body.place != start + length:
+            raise self.reject(f"the tree that begins at byte {start} has not the {length} bytes that are said")
+        raise Contradiction
 
     def exclusions(self, state: S) -> None:
         """Read the runs of EXCLUDE steps, each followed by PROPAGATE, that come before a branch."""

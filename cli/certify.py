@@ -25,7 +25,13 @@ SCHEMA = "robustness/certify/1"
 @graph_argument
 @click.option("-r", type=click.IntRange(min=1), metavar="R", required=True, help="Is GRAPH (R,S)-robust?")
 @click.option("-s", type=click.IntRange(min=1), metavar="S", default=1, show_default=True, help="1 is r-robustness.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="Where the certificate goes.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    required=True,
+    help="Where the certificate goes; FILE.gz is compressed.",
+)
 @click.option(
     "--canonical",
     type=click.Path(path_type=Path),
@@ -58,19 +64,22 @@ def command(
     verify', which needs nothing but Python. It has been verified before it is written. Exit code 0 robust, 10 not
     robust, 30 undecided (nothing is written).
     """
+    from certificates.file_bytes import certificate_blocks
+    from certificates.stream import Stream
     from robustness.decision.bounds import quick_bounds
     from robustness.decision.certification import certify
     from robustness.files.writing import replace_file, require_different_files
     from robustness.results import RobustnessResult, Verdict
 
     proofs = [output.with_name(output.name + suffix) for suffix in (".opb", ".pbp")] if proof_format == "veripb" else []
-    require_different_files([source], [output, canonical, *proofs, query.state])
+    index = output.with_name(output.name + ".cubes")
+    require_different_files([source], [output, index, canonical, *proofs, query.state])
     graph = load_graph(source)
     is_interrupted = False
     with ProgressLine(console) as line:
 
         def work() -> RobustnessResult:
-            return certify(graph, r, s, **query.effort(line))
+            return certify(graph, r, s, output=output, **query.effort(line))
 
         try:
             result = query.wait_for(work, line)
@@ -78,17 +87,18 @@ def command(
             is_interrupted = isinstance(stop, KeyboardInterrupt)
             reason = "interrupted" if is_interrupted else "the time limit was reached"
             result = RobustnessResult(Verdict.UNDECIDED, r, s, bounds=quick_bounds(graph), stats={"reason": reason})
-    written: dict[str, str] = {}
-    if result.certificate is not None:
-        replace_file(output, result.certificate)
-        written["certificate"] = str(output)
+    files = dict(result.stats.get("written", {}))
+    size = files.pop("bytes", 0)
+    written: dict[str, str] = files
+    if files:
         if canonical is not None:
             replace_file(canonical, graph.canonical_bytes())
             written["canonical"] = str(canonical)
         if proof_format == "veripb" and result.verdict.value == "robust":
             from robustness.decision.veripb import export
 
-            model, proof = export(graph.canonical_bytes(), result.certificate, version=veripb_version)
+            data = Stream(certificate_blocks(output)).rest()
+            model, proof = export(graph.canonical_bytes(), data, version=veripb_version)
             for suffix, text in ((".opb", model), (".pbp", proof)):
                 replace_file(output.with_name(output.name + suffix), text)
                 written[suffix[1:]] = str(output.with_name(output.name + suffix))
@@ -102,24 +112,26 @@ def command(
                 "s": s,
                 "algorithm": result.algorithm,
                 "bounds": None if result.bounds is None else result.bounds.as_dict(),
-                "bytes": len(result.certificate or b""),
+                "bytes": size,
                 "files": written,
                 **({"estimate": result.stats["estimate"]} if "estimate" in result.stats else {}),
                 "seconds": round(result.seconds, 6),
             },
         )
     else:
-        _tell(console, result, f"{source}, {graph.n} nodes, {graph.arc_count} arcs", written, proof_format)
+        _tell(console, result, f"{source}, {graph.n} nodes, {graph.arc_count} arcs", written, size, proof_format)
     if is_interrupted:
         console.error("interrupted: what is printed holds, nothing else is claimed")
         ctx.exit(ExitCode.INTERRUPTED)
     ctx.exit(ExitCode.of_verdict(result.verdict.value))
 
 
-def _tell(console: Console, result: RobustnessResult, network: str, written: dict[str, str], proof_format: str) -> None:
+def _tell(
+    console: Console, result: RobustnessResult, network: str, written: dict[str, str], size: int, proof_format: str
+) -> None:
     """Print the answer, what is known where there is none, and the files."""
     console.result(f"{result.summary()}: {network}")
-    if result.certificate is None:
+    if not written:
         console.result(f"nothing is certified: {result.stats.get('reason', 'a limit was reached')}")
         if result.bounds is not None:
             low, high = result.bounds.lower, result.bounds.upper
@@ -127,5 +139,5 @@ def _tell(console: Console, result: RobustnessResult, network: str, written: dic
     elif proof_format == "veripb" and result.verdict.value == "not-robust":
         console.talk("no VeriPB proof: that a graph is not robust is shown by the pair of sets in the certificate")
     for kind, path in written.items():
-        size = f" ({len(result.certificate or b''):,} bytes, verified)" if kind == "certificate" else ""
-        console.talk(f"wrote {path}{size}")
+        note = {"certificate": f" ({size:,} bytes, verified)", "cubes": " (for verify --jobs)"}.get(kind, "")
+        console.talk(f"wrote {path}{note}")

@@ -249,7 +249,7 @@ class Survey:
 
 def _write(report: Report, certificate: Path | None, canonical: Path | None) -> dict[str, str]:
     """Write the files asked for, as far as there is something to write; return their names."""
-    from robustness.files import replace_file
+    from robustness.files import replace_file, write_certificate
     from robustness.time_varying.certification import canonical_sequence
 
     written: dict[str, str] = {}
@@ -257,7 +257,7 @@ def _write(report: Report, certificate: Path | None, canonical: Path | None) -> 
         replace_file(canonical, canonical_sequence(report.sequence))
         written["canonical"] = str(canonical)
     if certificate is not None and report.certificate is not None:
-        replace_file(certificate, report.certificate)
+        write_certificate(certificate, report.certificate)
         written["certificate"] = str(certificate)
     return written
 

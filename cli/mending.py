@@ -354,12 +354,12 @@ def _keep(
 
 
 def _write(console: Console, path: Path, data: bytes | None) -> None:
-    from robustness.files import replace_file
+    from robustness.files import write_certificate
 
     if data is None:
         console.talk("no certificate: a limit was reached, or the kernel has no evidence of this kind")
     else:
-        replace_file(path, data)
+        write_certificate(path, data)
         console.talk(f"wrote {path} ({len(data):,} bytes, verified)")
 
 

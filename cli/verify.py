@@ -48,6 +48,14 @@ SCHEMA = "robustness/verify/1"
 @click.option(
     "--timeout", type=float, metavar="SECONDS", help="Of a mending certificate: for the solver that confirms the bound."
 )
+@click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    default=1,
+    show_default=True,
+    metavar="N",
+    help="Processes, for a long refutation that 'certify --jobs' or '--cluster' wrote with its FILE.cubes.",
+)
 @json_option
 @speaking
 def command(
@@ -63,6 +71,7 @@ def command(
     model: str | None,
     checker: str,
     timeout: float | None,
+    jobs: int,
     as_json: bool,
 ) -> None:
     """Verify CERTIFICATE, of any kind, for GRAPH and compare the claim that it proves with the question asked.
@@ -84,7 +93,11 @@ def command(
     with ProgressLine(console) as line:
         stream = Stream(_pieces(certificate, line))
         whole = stream.rest() if checker == "verified" or format_of(stream) == MENDING_FORMAT else b""
-        claim = _verified_formally(source, whole) if checker == "verified" else _verified(source, whole or stream)
+        if checker == "verified":
+            claim = _verified_formally(source, whole)
+        else:
+            shared = _verified_in_parallel(console, source, certificate, stream, jobs, line) if jobs > 1 else None
+            claim = shared or _verified(source, whole or stream)
     answers, how = comparison(claim, question)
     confirmation = _confirmed(source, whole, timeout) if answers and hasattr(claim, "least") else None
     if confirmation is not None:
@@ -113,6 +126,29 @@ def _pieces(certificate: Path, line: ProgressLine) -> Iterator[bytes]:
         yield from certificate_blocks(certificate, tell)
     except OSError as problem:
         raise UnreadableTopology(f"{certificate}: cannot be read: {problem.strerror}") from None
+
+
+def _verified_in_parallel(
+    console: Console, source: str, certificate: Path, stream: Stream, jobs: int, line: ProgressLine
+) -> Claim | None:
+    """Return what several processes prove, where certify left word of the cubes, and None for anything else."""
+    from certificates.questions import format_of
+    from certificates.tolerance import FORMATS as TOLERANCE_FORMATS
+    from certificates.verification import FORMAT
+    from robustness.parallel_verification import cubes_beside, verify_in_parallel
+
+    def tell(words: str) -> None:
+        line.note = words
+        line.tick()
+
+    cubes = cubes_beside(certificate) if format_of(stream) in (FORMAT, *TOLERANCE_FORMATS) else ()
+    if not cubes:
+        console.talk(f"one process verifies: there is no {certificate.name}.cubes of a long refutation beside it")
+        return None
+    claim = verify_in_parallel(load_graph(source).canonical_bytes(), certificate, cubes, jobs, tell)
+    if claim is None:
+        console.talk("the cubes were not accepted one by one: one process verifies the whole")
+    return claim
 
 
 def _verified(source: str, certificate: bytes | Stream) -> Claim:

@@ -97,8 +97,8 @@ class Answer:
 
     @property
     def transcript(self) -> bytes | None:
-        """The transcript of a refutation that was recorded."""
-        return self.evidence.transcript if isinstance(self.evidence, Refutation) else None
+        """The transcript of a refutation that was recorded, whole."""
+        return bytes(self.evidence.transcript) if isinstance(self.evidence, Refutation) else None
 
     def rechecked(self, question: Question) -> Answer:
         """Return the answer after its pair was checked against the definition; a wrong pair is an InternalError."""

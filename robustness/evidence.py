@@ -12,6 +12,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from robustness.transcripts import Transcript
+
 __all__ = [
     "Convention",
     "DegreeRule",
@@ -91,7 +93,7 @@ class Spectral:
 class Refutation:
     """The transcript of a complete search, which ``certificates`` replays (docs/certificate-format.md)."""
 
-    transcript: bytes
+    transcript: Transcript
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ import hashlib
 import json
 import os
 import time
+import zlib
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -23,6 +24,7 @@ from typing import IO, Any, Self
 
 from robustness.cubes.cube import Cube
 from robustness.errors import InvalidParameter
+from robustness.transcripts import Spool
 
 __all__ = ["CubeJournal", "Entry"]
 
@@ -31,7 +33,8 @@ _FORMAT = "robustness/cubes/1"
 #: Seconds between two times at which the disk itself is waited for.
 _SYNC = 1.0
 
-#: What is known of a cube: as :func:`robustness.cubes.solving.solve` returns it, with ``rest`` a list of cubes.
+#: What is known of a cube: as :func:`robustness.cubes.solving.solve` returns it, with ``rest`` a list of cubes,
+#: and with ``piece``, where its transcript is kept, for ``transcript``.
 Entry = dict[str, Any]
 
 
@@ -57,6 +60,7 @@ class CubeJournal:
 
     def __init__(self, path: Path | None, question: str, words: int) -> None:
         self.entries: dict[str, Entry] = {}
+        self.spool = Spool()
         self._question, self._words = question, words
         self._stream: IO[bytes] | None = None
         self._synced = time.monotonic()
@@ -82,16 +86,15 @@ class CubeJournal:
                 os.fsync(self._stream.fileno())
             self._stream.close()
 
-    def remember(self, cube: Cube, entry: Entry) -> None:
+    def remember(self, cube: Cube, entry: Entry, transcript: bytes) -> None:
         """Append what came of a cube; it is in the hands of the system when this returns."""
-        self.entries[cube.key] = entry
         if self._stream is None:
             return
         line: dict[str, Any] = {
             "question": self._question,
             "cube": cube.key,
             "nodes": entry["nodes"],
-            "transcript": base64.b64encode(entry["transcript"]).decode("ascii"),
+            "transcript": base64.b64encode(transcript).decode("ascii"),
             "rest": [
                 (base64.b64encode(data).decode("ascii"), flags) for data, flags in map(Cube.to_wire, entry["rest"])
             ],
@@ -137,7 +140,9 @@ class CubeJournal:
 
     def _take(self, content: dict[str, Any]) -> None:
         rest = [Cube.from_wire((base64.b64decode(data), flags), self._words) for data, flags in content["rest"]]
-        entry = {"nodes": content["nodes"], "transcript": base64.b64decode(content["transcript"]), "rest": rest}
+        packed = base64.b64decode(content["transcript"])
+        piece = self.spool.keep_packed(packed, len(zlib.decompress(packed))) if packed else None
+        entry: Entry = {"nodes": content["nodes"], "piece": piece, "rest": rest}
         if "pair" in content:
             entry["pair"] = content["pair"]
         self.entries.setdefault(content["cube"], entry)

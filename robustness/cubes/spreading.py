@@ -35,6 +35,7 @@ from robustness.definitions import is_violation
 from robustness.digraph import Digraph, GraphWarning
 from robustness.evidence import Exhausted, Pair, Refutation
 from robustness.limits import Limits, Progress
+from robustness.transcripts import Branch, Piece, Transcript
 
 __all__ = ["search_by_cubes"]
 
@@ -62,22 +63,18 @@ class _Piece:
     slices: int = 0
     tries: int = 0
     is_done: bool = False
-    transcript: bytes = b""
+    transcript: Piece | None = None
     rest: list[_Piece] = field(default_factory=list)
 
     @property
     def seconds(self) -> float:
         return min(_FIRST_SLICE * 2.0**self.slices, _LONGEST_SLICE)
 
-    def joined(self) -> bytes:
-        """Return the whole transcript (without recursion)."""
-        parts, waiting = [], [self]
-        while waiting:
-            piece = waiting.pop()
-            if piece.transcript:
-                parts.append(zlib.decompress(piece.transcript))
-            waiting.extend(reversed(piece.rest))
-        return b"".join(parts)
+    @property
+    def parts(self) -> list[Piece | Branch]:
+        """Its transcript, and what was left of it."""
+        own: list[Piece | Branch] = [] if self.transcript is None else [self.transcript]
+        return own + list(self.rest)
 
 
 def search_by_cubes(
@@ -160,7 +157,7 @@ class _Spread:
                 self.stats["estimate"] = self.estimate.as_dict()
             return Answer.undecided(self.reason, self.stats)
         if self.question.transcript:
-            return Answer(Refutation(self.root.joined()), self.stats)
+            return Answer(Refutation(Transcript(self.root)), self.stats)
         return Answer(Exhausted(), self.stats)
 
     def _trusted(self) -> str:
@@ -187,7 +184,7 @@ class _Spread:
 
     def _settle(self, piece: _Piece, entry: Entry) -> list[_Piece]:
         """Write down what came of a cube; return the pieces that are left of it."""
-        piece.is_done, piece.transcript = True, entry["transcript"]
+        piece.is_done, piece.transcript = True, entry["piece"]
         piece.rest = [_Piece(cube, piece.slices + 1) for cube in entry["rest"]]
         self.stats["nodes"] += entry["nodes"]
         self.stats["cubes"] += 1
@@ -231,7 +228,7 @@ class _Spread:
         if result["status"] == PAIR_FOUND:
             if not self._take_pair(result["pair"]):
                 return "a pair that violates nothing"
-            self.journal.remember(piece.cube, {"nodes": 0, "transcript": b"", "rest": [], "pair": result["pair"]})
+            self.journal.remember(piece.cube, {"nodes": 0, "rest": [], "pair": result["pair"]}, b"")
             return ""
         rest: list[Cube] = []
         if result["status"] == OPEN_CUBE:
@@ -240,10 +237,11 @@ class _Spread:
             rest = left.cut(max(1, short + 1))
         elif result["status"] != CLOSED_CUBE:
             return f"a result with the status {result['status']!r}"
+        packed = bytes(result["transcript"])
+        entry: Entry = {"nodes": int(result["nodes"]), "piece": None, "rest": rest}
         if self.question.transcript:
-            zlib.decompress(result["transcript"])
-        entry: Entry = {"nodes": int(result["nodes"]), "transcript": bytes(result["transcript"]), "rest": rest}
-        self.journal.remember(piece.cube, entry)
+            entry["piece"] = self.journal.spool.keep_packed(packed, len(zlib.decompress(packed)))
+        self.journal.remember(piece.cube, entry, packed)
         self.told["by workers"] += not rest
         self.stats["failed_literals"] += int(result["failed"])
         self.stats["probes"] += int(result["probes"])

@@ -13,7 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from certificates import MalformedCertificate, verify
+from certificates import MalformedCertificate
 from certificates.verification import FORMAT
 from robustness.answers import Answer, Question, Verdict, answers_in_turn
 from robustness.cubes.executors import require_executor
@@ -25,13 +25,15 @@ from robustness.digraph import Digraph, GraphLike
 from robustness.errors import InternalError, InvalidParameter
 from robustness.evidence import Convention, DegreeRule, Evidence, Growth, Refutation, ViolatingPair
 from robustness.limits import Limits, Progress
+from robustness.parallel_verification import verify_listing, write_with_cubes
 from robustness.results import RobustnessResult
+from robustness.transcripts import Transcript
 from robustness.whole_numbers import taking_numpy_integers
 
 __all__ = ["Encoded", "certify", "certify_within", "direct_evidence", "encode", "kernel_evidence"]
 
 #: Evidence in a certificate: what its first line says of it, and the bytes that follow.
-Encoded = tuple[dict[str, Any], bytes]
+Encoded = tuple[dict[str, Any], bytes | Transcript]
 
 
 @taking_numpy_integers
@@ -47,6 +49,7 @@ def certify(
     evidence: str = "shortest",
     executor: Any = None,
     state: str | Path | None = None,
+    output: str | Path | None = None,
 ) -> RobustnessResult:
     """Decide (r,s)-robustness of G and return the result with a verified certificate of it.
 
@@ -60,11 +63,16 @@ def certify(
         In 1..n.
     evidence : "shortest" or "refutation"
         For ROBUST: whichever kind is shortest, or always the transcript of a complete search.
+    output : path, optional
+        A file that the certificate is written to once it has been verified, compressed by gzip when the name ends in
+        ``.gz``. A long refutation then never is in memory, and ``OUTPUT.cubes`` names the trees in it that can be
+        verified apart (:mod:`robustness.parallel_verification`).
 
     Returns
     -------
     RobustnessResult
-        ``certificate`` holds the bytes for either verdict; it is None when the verdict is UNDECIDED. Pass
+        ``certificate`` holds the bytes for either verdict; it is None when the verdict is UNDECIDED, or when they went
+        to ``output``; then ``stats["written"]`` has the names of the files, and the bytes of the certificate. Pass
         ``Digraph.canonical_bytes()`` or a node-link JSON document of the graph to the verifier.
 
     Raises
@@ -78,7 +86,7 @@ def certify(
     certificates.verify : the checker
 
     >>> import networkx as nx
-    >>> from certificates import MalformedCertificate, verify
+    >>> from certificates import MalformedCertificate
     >>> wheel = Digraph.from_networkx(nx.wheel_graph(5))
     >>> print(verify(wheel.canonical_bytes(), certify(wheel, 2).certificate).verdict)
     robust
@@ -88,11 +96,14 @@ def certify(
     if evidence not in ("shortest", "refutation"):
         raise InvalidParameter(f"evidence is 'shortest' or 'refutation', not {evidence!r}")
     limits = Limits.of(time_limit, jobs, seed, progress).spread_over(executor, state)
-    result = certify_within(Question.about(G, r, s), limits, shortest=evidence == "shortest")
+    place = None if output is None else Path(output)
+    result = certify_within(Question.about(G, r, s), limits, shortest=evidence == "shortest", output=place)
     return replace(result, seconds=time.monotonic() - started)
 
 
-def certify_within(question: Question, limits: Limits, *, shortest: bool = True) -> RobustnessResult:
+def certify_within(
+    question: Question, limits: Limits, *, shortest: bool = True, output: Path | None = None
+) -> RobustnessResult:
     """Do what :func:`certify` does for a question that is known to be valid, within ``limits``."""
     graph, r, s = question
     if r == 0 or (graph.n < 2 and r > largest_conceivable_r(graph.n)):
@@ -101,9 +112,9 @@ def certify_within(question: Question, limits: Limits, *, shortest: bool = True)
     result = RobustnessResult.of(question, answer)
     if proof is None:
         return result
-    certificate = encode(graph, r, s, result.verdict, proof)
+    header = _header(graph, r, s, result.verdict, proof[0])
     try:
-        claim = verify(graph.canonical_bytes(), certificate)
+        claim, cubes = verify_listing(graph.canonical_bytes(), header, proof[1], limits)
     except MalformedCertificate as problem:
         reason = f"the proof is beyond what the kernel checks: {problem}"
         if result.verdict is Verdict.NOT_ROBUST:  # the pair was re-checked: only its certificate cannot be written
@@ -113,7 +124,9 @@ def certify_within(question: Question, limits: Limits, *, shortest: bool = True)
         )
     if (claim.verdict, claim.r, claim.s) != (result.verdict.value, r, s):
         raise InternalError(f"the certificate proves {claim}, not the verdict {result.summary()}: please report")
-    return replace(result, certificate=certificate)
+    if output is None:
+        return replace(result, certificate=header + bytes(proof[1]))
+    return replace(result, stats={**result.stats, "written": write_with_cubes(output, header, proof[1], cubes)})
 
 
 def _proven(question: Question, limits: Limits, shortest: bool) -> tuple[Answer, Encoded | None]:
@@ -149,9 +162,14 @@ def kernel_evidence(question: Question, evidence: Evidence, limits: Limits) -> E
 
 def encode(graph: Digraph, r: int, s: int, verdict: Verdict, evidence: Encoded) -> bytes:
     """Return the certificate's bytes: one line of JSON, then the body."""
+    return _header(graph, r, s, verdict, evidence[0]) + bytes(evidence[1])
+
+
+def _header(graph: Digraph, r: int, s: int, verdict: Verdict, evidence: dict[str, Any]) -> bytes:
+    """Return the first line of a certificate."""
     claim = {"property": "rs-robust", "r": r, "s": s, "verdict": verdict.value}
-    header = {"format": FORMAT, "graph": graph.sha256, "claim": claim, "evidence": evidence[0]}
-    return json.dumps(header, separators=(",", ":")).encode("ascii") + b"\n" + evidence[1]
+    header = {"format": FORMAT, "graph": graph.sha256, "claim": claim, "evidence": evidence}
+    return json.dumps(header, separators=(",", ":")).encode("ascii") + b"\n"
 
 
 def _growth(question: Question, growth: Growth, limits: Limits) -> Encoded | None:

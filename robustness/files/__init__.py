@@ -12,7 +12,7 @@ from robustness.files.front import (
     read_topology,
     write_topology,
 )
-from robustness.files.writing import replace_file
+from robustness.files.writing import replace_file, write_certificate
 
 __all__ = [
     "FORMATS",
@@ -25,5 +25,6 @@ __all__ = [
     "names_of_graphs",
     "read_topology",
     "replace_file",
+    "write_certificate",
     "write_topology",
 ]

@@ -5,17 +5,35 @@ from __future__ import annotations
 import os
 import stat
 import tempfile
-from collections.abc import Iterable
+import zlib
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
 
 from robustness.errors import InvalidParameter
 
-__all__ = ["replace_file", "require_different_files"]
+__all__ = ["replace_file", "require_different_files", "write_certificate"]
 
 
-def replace_file(path: str | os.PathLike[str], data: bytes) -> None:
-    """Write ``data`` to ``path`` whole or not at all.
+def write_certificate(path: str | os.PathLike[str], data: bytes | Iterable[bytes]) -> None:
+    """Do what :func:`replace_file` does, and compress the data by gzip when the name ends in ``.gz``."""
+    replace_file(path, _packed(data) if os.fspath(path).endswith(".gz") else data)
+
+
+def _packed(data: bytes | Iterable[bytes]) -> Iterator[bytes]:
+    """Yield data compressed by gzip, without a name and a time: the same data make the same bytes."""
+    packer = zlib.compressobj(6, zlib.DEFLATED, 16 + zlib.MAX_WBITS)
+    for block in _blocks(data):
+        yield packer.compress(block)
+    yield packer.flush()
+
+
+def _blocks(data: bytes | Iterable[bytes]) -> Iterable[bytes]:
+    return (data,) if isinstance(data, bytes) else data
+
+
+def replace_file(path: str | os.PathLike[str], data: bytes | Iterable[bytes]) -> None:
+    """Write ``data``, which may come in blocks, to ``path`` whole or not at all.
 
     A regular file, or none yet: the bytes go to a new file in the same folder, reach the disk, and take the place of
     ``path``. A symbolic link stays, and the file that it leads to is replaced. A device, a pipe or a socket is written
@@ -30,7 +48,7 @@ def replace_file(path: str | os.PathLike[str], data: bytes) -> None:
     try:
         if _is_special(target):
             with open(target, "wb") as stream:
-                stream.write(data)
+                stream.writelines(_blocks(data))
         else:
             _replace(target, data)
     except OSError as problem:  # which may name the temporary file
@@ -69,13 +87,13 @@ def _is_special(target: Path) -> bool:
     return not stat.S_ISREG(mode) and not stat.S_ISDIR(mode)
 
 
-def _replace(target: Path, data: bytes) -> None:
+def _replace(target: Path, data: bytes | Iterable[bytes]) -> None:
     if target.is_dir():
         raise IsADirectoryError(21, "Is a directory")
     handle, temporary = tempfile.mkstemp(prefix=f".{target.name[:64]}.", dir=target.parent)
     try:
         with open(handle, "wb") as stream:
-            stream.write(data)
+            stream.writelines(_blocks(data))
             os.fchmod(stream.fileno(), _permissions(target))
             stream.flush()
             os.fsync(stream.fileno())

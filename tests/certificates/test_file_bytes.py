@@ -19,6 +19,7 @@ def test_a_file_is_read_whole_wherever_opening_can_wait_or_not(tmp_path: Path, m
     for _ in range(2):
         assert read_at_most(tmp_path / "file", 1000) == b"x" * 100
         assert read_at_most(tmp_path / "empty", 1000) == b""
+        assert len(read_at_most(tmp_path / "file", 10)) > 10
         monkeypatch.delattr(os, "O_NONBLOCK", raising=False)
 
 

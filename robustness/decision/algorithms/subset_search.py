@@ -44,6 +44,7 @@ from robustness.kernels.layout import (
     SYMMETRIC,
 )
 from robustness.limits import Limits, Progress
+from robustness.transcripts import Branch, Piece, Spool, Transcript
 
 __all__ = ["MOST_NODES", "decide"]
 
@@ -60,24 +61,12 @@ MOST_NODES = 20_000
 class Cube:
     """A subproblem: a state that has not been propagated, and whether it is still symmetric in the two sides.
 
-    ``transcript`` receives its refutation: bytes, and cubes that were handed on, in the order of the proof.
+    ``parts`` receives its refutation, in the order of the proof: pieces of the transcript, and cubes handed on.
     """
 
     state: _Words
     symmetric: bool
-    transcript: list[bytes | Cube] = field(default_factory=list)
-
-    def joined(self) -> bytes:
-        """Return the whole transcript, those of handed-on cubes in their places (without recursion)."""
-        parts: list[bytes] = []
-        waiting: list[bytes | Cube] = [self]
-        while waiting:
-            part = waiting.pop()
-            if isinstance(part, bytes):
-                parts.append(part)
-            else:
-                waiting.extend(reversed(part.transcript))
-        return b"".join(parts)
+    parts: list[Piece | Branch] = field(default_factory=list)
 
 
 def decide(
@@ -124,6 +113,7 @@ class _Search:
         self.limits = limits
         self.nodes_left = limits.nodes_allowed(graph.n)
         self.transcript = transcript
+        self.spool = Spool()
         self.blockers = blockers
         self.look_ahead = look_ahead
         self.root = Cube(whole_state(graph.n), symmetric=True)
@@ -170,7 +160,7 @@ class _Search:
             return Answer.violated_by(self.pair, stats)
         if self.reason:
             return Answer.undecided(self.reason, stats)
-        return Answer(Refutation(self.root.joined()) if self.transcript else Exhausted(), stats)
+        return Answer(Refutation(Transcript(self.root)) if self.transcript else Exhausted(), stats)
 
     def _work(self, number: int) -> None:
         try:
@@ -232,7 +222,7 @@ class _Search:
             search.stack = np.concatenate([stack, np.zeros_like(stack)])
             search.table = np.concatenate([table, np.zeros_like(table)])
         elif status == DONATED:
-            cube.transcript.append(self._given[id(cube), search.level])
+            cube.parts.append(self._given[id(cube), search.level])
             np.asarray(search.table)[search.level, GIVEN] = 0
             search.level -= 1
             return bool(search.level < 0)
@@ -247,7 +237,7 @@ class _Search:
     def _take_transcript(self, cube: Cube, rules: Any) -> None:
         """Move what the kernel has written to the cube."""
         if self.transcript:
-            cube.transcript.append(np.asarray(rules.buffer)[: rules.place].tobytes())
+            cube.parts.append(self.spool.keep(np.asarray(rules.buffer)[: rules.place].tobytes()))
             rules.place = 0
 
     def _granted(self, quota: int) -> int:
