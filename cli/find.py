@@ -52,7 +52,7 @@ class NodeNumbers(click.ParamType):  # type: ignore[type-arg]  # generic only fr
 @click.option("--directed", is_flag=True, help="Search among digraphs.")
 @click.option("--fewest-edges", is_flag=True, help="Look for a graph with the fewest edges.")
 @click.option("-o", "--output", type=click.Path(dir_okay=False), metavar="FILE", help="Write the graph there.")
-@query_options()
+@query_options(cluster=True, state=False)
 def command(
     ctx: click.Context,
     console: Console,

@@ -33,6 +33,7 @@ COMMANDS: Mapping[str, str] = MappingProxyType(
         "find": ".find:command",
         "simulate": ".simulate:command",
         "attack": ".attack:command",
+        "sample": ".sample:command",
         "survey": ".survey:command",
         "report": ".report:command",
         "draw": ".draw:command",

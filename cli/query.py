@@ -95,14 +95,14 @@ def speaking(command: _Command) -> _Command:
 
 
 def query_options(
-    *, json: bool = True, algorithm: bool = False, cluster: bool = False
+    *, json: bool = True, algorithm: bool = False, cluster: bool = False, state: bool = True
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Add the common options to a command, which gets the context, the console and a :class:`Query`.
 
     Parameters
     ----------
-    json, algorithm, cluster : bool
-        Whether the command has --json, --algorithm, and --cluster with --state.
+    json, algorithm, cluster, state : bool
+        Whether the command has --json, --algorithm, --cluster, and with it --state.
     """
 
     def add(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -124,7 +124,8 @@ def query_options(
         wrapped: Callable[..., Any] = speaking(with_query)
         for option in (seed_option, jobs_option, timeout_option):
             wrapped = option(wrapped)
-        wrapped = cluster_option(cubes_option(wrapped)) if cluster else wrapped
+        wrapped = cubes_option(wrapped) if cluster and state else wrapped
+        wrapped = cluster_option(wrapped) if cluster else wrapped
         wrapped = algorithm_option(wrapped) if algorithm else wrapped
         return json_option(wrapped) if json else wrapped
 

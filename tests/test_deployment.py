@@ -48,6 +48,7 @@ COMMANDS = [
     (f"joint {ROUND_ROBIN} -r 2 --canonical OUT/w.sequence --certificate OUT/w.joint", 0),
     ("verify OUT/w.sequence OUT/w.joint --expect robust -r 2", 0),
     ("find -n 4..5 -p 2-robust", 0),
+    ("sample OUT/w.json --nodes 5", 30),
     ("survey OUT/w.json", 0),
     ("draw OUT/w.json -o OUT/w.svg", 0),
     ("report OUT/w.json -o OUT/w.html", 0),

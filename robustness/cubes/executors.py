@@ -13,14 +13,17 @@ import importlib
 import queue
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol, TypeVar, runtime_checkable
 
 from robustness.cubes.solving import solve
 from robustness.errors import InvalidParameter, MissingExtra
 
-__all__ = ["CubeExecutor", "cube_executor", "opened_cluster", "require_executor"]
+__all__ = ["CubeExecutor", "cube_executor", "mapped", "opened_cluster", "require_executor"]
+
+_Item = TypeVar("_Item")
+_Value = TypeVar("_Value")
 
 #: Seconds that a cluster may take to say how many workers it has before the last number is used again.
 _STALE = 2.0
@@ -72,6 +75,25 @@ def cube_executor(executor: Any) -> CubeExecutor:
         "executor is a concurrent.futures.Executor, a distributed.Client or a CubeExecutor, "
         f"not a {type(executor).__name__}"
     )
+
+
+def mapped(executor: Any, function: Callable[[_Item], _Value], items: Sequence[_Item]) -> list[_Value]:
+    """Return ``function(item)`` of each item, in order, worked out by an executor; None is this process.
+
+    What a worker raises is raised here. ``function`` is one of a module, and values are plain.
+
+    Raises
+    ------
+    InvalidParameter
+        For an executor that is neither of ``concurrent.futures`` nor a ``distributed.Client``.
+    """
+    if executor is None:
+        return [function(item) for item in items]
+    if isinstance(executor, concurrent.futures.Executor):
+        return list(executor.map(function, items))
+    if isinstance(cube_executor(executor), _Dask):
+        return list(executor.gather(executor.map(function, items, pure=False)))
+    raise InvalidParameter("executor is a concurrent.futures.Executor or a distributed.Client here")
 
 
 def require_executor(executor: Any) -> None:

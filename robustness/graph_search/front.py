@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from robustness.cubes.executors import require_executor
 from robustness.digraph import Digraph
 from robustness.errors import InternalError, InvalidParameter, Undecided
 from robustness.graph_search.enumeration import can_enumerate, first_fitting
@@ -63,6 +64,7 @@ def find_graph(
     seed: int = 0,
     progress: Callable[[Progress], None] | None = None,
     symmetry_breaking: bool = True,
+    executor: Any = None,
 ) -> FindResult:
     """Search for a graph that has all properties in ``satisfies`` and none of those in ``violates``.
 
@@ -87,6 +89,8 @@ def find_graph(
         Called with a :class:`~robustness.limits.Progress` after every graph that CP-SAT proposed.
     symmetry_breaking : bool
         Whether CP-SAT may number the nodes by role or degree; it changes the time, never the verdict.
+    executor : concurrent.futures.Executor, distributed.Client or CubeExecutor, optional
+        Where the exact searches for violating pairs of what is proposed are solved, by cubes.
 
     Returns
     -------
@@ -110,9 +114,9 @@ def find_graph(
     """
     started = time.monotonic()
     sizes = _sizes(n)
-    search = _search(
-        satisfies, violates, directed, minimise, Limits.of(time_limit, jobs, seed, progress), method, symmetry_breaking
-    )
+    require_executor(executor)
+    limits = Limits.of(time_limit, jobs, seed, progress).spread_over(executor)
+    search = _search(satisfies, violates, directed, minimise, limits, method, symmetry_breaking)
     impossible: list[int] = []
     result = FindResult(FindVerdict.IMPOSSIBLE)
     for size in sizes:
@@ -185,7 +189,7 @@ def _answer(
         broken += [f"not {each}" for each in search.violates if each.holds(graph, search.limits)]
         for each in search.satisfies:
             if isinstance(each, HasTrap):
-                trap = smallest_trap(graph, each.f, **search.limits.keywords())
+                trap = smallest_trap(graph, each.f, **search.limits.spread_over().keywords())
                 made.graph["trap"] = None if trap is None else trap.as_dict()
     except Undecided as limit:
         return FindResult(FindVerdict.UNDECIDED, n=n, method=method, stats={**stats, "reason": str(limit)})

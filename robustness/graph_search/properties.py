@@ -97,7 +97,7 @@ class HasTrap:
 
     def holds(self, graph: Digraph, limits: Limits = UNBOUNDED) -> bool:
         """Decide it by removing every set of at most f nodes."""
-        return smallest_trap(graph, self.f, **_started(limits).keywords()) is not None
+        return smallest_trap(graph, self.f, **_started(limits).spread_over().keywords()) is not None
 
     def __str__(self) -> str:
         return f"trap({self.f})"

@@ -178,7 +178,7 @@ def _members(mask: int) -> frozenset[int]:
 
 
 def _learn_trap(model: GraphModel, proposal: Digraph, f: int, limits: Limits) -> int:
-    trap = smallest_trap(proposal, f, **limits.keywords())
+    trap = smallest_trap(proposal, f, **limits.spread_over().keywords())
     if trap is None:
         return 0
     model.forbid_trap(Pair(proposal.ids(trap.S1), proposal.ids(trap.S2)), proposal.ids(trap.M), f)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from robustness.figures.network import draw_to_file
 from robustness.paper.audit import about_graphs, about_motion, about_notions, about_proposition, about_runs
@@ -38,7 +39,7 @@ _ENDS = ("agreement", "split", "divergence", "undecided")
 _PLAYED = 7
 
 
-def write(folder: Path) -> None:
+def write(folder: Path, executor: Any = None) -> None:
     """Write ``paper-audit.md`` and its drawings under the documentation's folder."""
     figures = folder / _FIGURES
     figures.mkdir(parents=True, exist_ok=True)
@@ -49,7 +50,7 @@ def write(folder: Path) -> None:
         rows.append(_row(claim, outcome, len(drawn) + 1))
         if outcome.counterexample is not None:
             drawn.append(_figure(figures, len(drawn) + 1, claim, outcome))
-    found = census()
+    found = census(executor=executor)
     played = [row for row in found if row.free and row.n <= _PLAYED]
     runs = {row: [battery(graph, row.f, seeds=2) for graph in row.free] for row in played}
     text = _PAGE.format(

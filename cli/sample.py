@@ -1,0 +1,102 @@
+"""``robustness sample``: what random samples of a large network say, which is never a proof."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from .exit_codes import ExitCode
+from .interruption import Overrun, interruptibly
+from .options import graph_argument, jobs_option, json_option, load_graph, timeout_option
+from .output import Console, ProgressLine, graph_document
+from .query import speaking
+
+if TYPE_CHECKING:
+    from robustness.sampling import SampleResult
+
+__all__ = ["SCHEMA", "command"]
+
+SCHEMA = "robustness/sample/1"
+
+
+@click.command("sample")
+@graph_argument
+@click.option("-r", type=click.IntRange(min=1), metavar="R", help="Is GRAPH R-robust?  [default: the greatest R]")
+@click.option(
+    "--error",
+    type=click.FloatRange(0, 0.5, min_open=True),
+    default=0.001,
+    show_default=True,
+    metavar="P",
+    help="The chance of error that is allowed.",
+)
+@click.option("--nodes", type=click.IntRange(min=2), default=40, show_default=True, help="Of each sample.")
+@click.option("--repeats", type=click.IntRange(min=1), default=10, show_default=True, help="How many samples.")
+@click.option(
+    "--seed",
+    type=click.IntRange(min=0, max=2**63 - 1),
+    metavar="N",
+    help="Draw the samples of another run again.  [default: drawn from the system]",
+)
+@timeout_option
+@jobs_option
+@json_option
+@speaking
+def command(
+    ctx: click.Context,
+    console: Console,
+    source: str,
+    r: int | None,
+    error: float,
+    nodes: int,
+    repeats: int,
+    seed: int | None,
+    timeout: float | None,
+    jobs: int,
+    as_json: bool,
+) -> None:
+    """Test by random samples whether GRAPH is R-robust, for networks that are too large to decide. No proof.
+
+    Each sample is a random set of nodes whose own network is decided exactly. "Likely R-robust" means: of a network
+    that is not R-robust, samples like these are drawn with probability P at most. It is no probability that GRAPH
+    is R-robust, and samples that say nothing are no sign that it is not. The exit code is 30 in any case, as
+    nothing is proven; 'robustness check' proves.
+    """
+    from robustness.sampling import SampleResult, SampleVerdict, sample_robustness
+
+    graph = load_graph(source)
+    with ProgressLine(console) as line:
+
+        def work() -> SampleResult:
+            return sample_robustness(
+                graph, r, error=error, nodes=nodes, repeats=repeats, seed=seed, time_limit=timeout, jobs=jobs,
+                progress=line,
+            )  # fmt: skip
+
+        try:
+            found = interruptibly(work, timeout, line.tick)
+        except Overrun as limit:
+            found = SampleResult(SampleVerdict.UNDECIDED, r or 0, 1.0, nodes, repeats, 0, seed or 0, str(limit))
+    if as_json:
+        console.document(SCHEMA, {"graph": graph_document(graph)} | _document(found))
+    else:
+        console.result(found.summary())
+        console.talk(f"drawn with --seed {found.seed}")
+    ctx.exit(ExitCode.UNDECIDED)
+
+
+def _document(found: SampleResult) -> dict[str, object]:
+    """Return what a test says, without the key ``verdict``, which is for what is proven."""
+    return {
+        "sample_verdict": found.verdict.value,
+        "is_proof": False,
+        "r": found.r,
+        "chance_of_error": found.chance,
+        "nodes": found.nodes,
+        "repeats": found.repeats,
+        "q": found.q,
+        "seed": found.seed,
+        "reason": found.reason,
+        "seconds": round(found.seconds, 6),
+    }

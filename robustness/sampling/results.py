@@ -1,0 +1,65 @@
+"""What :func:`robustness.sampling.sample_robustness` returns: its own verdict, which no other command has."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass, field
+from typing import Any, NoReturn
+
+__all__ = ["SampleResult", "SampleVerdict"]
+
+
+class SampleVerdict(enum.Enum):
+    """What samples say. Neither value is a proof; :class:`robustness.Verdict` has the verdicts that are proven."""
+
+    #: Were the network not r-robust, samples like these would be rarer than the level.
+    LIKELY = "likely-robust"
+    #: The samples do not say so, or a limit came first. Nothing is claimed.
+    UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True, slots=True)
+class SampleResult:
+    """What samples of a network say.
+
+    Attributes
+    ----------
+    verdict : SampleVerdict
+    r : int
+        What was asked; without a question, the greatest r that the samples speak for, 0 if none.
+    chance : float
+        For LIKELY: an upper bound, rounded up, on the probability that samples of a network which is not r-robust say
+        so. It is no probability that the network is r-robust.
+    nodes, repeats, q : int
+        Of each sample; how many samples; and what each of them has been proven to be: q-robust.
+    seed : int
+        What the samples were drawn with.
+    reason : str
+        Of UNDECIDED.
+    stats : dict
+    seconds : float
+    """
+
+    verdict: SampleVerdict
+    r: int
+    chance: float
+    nodes: int
+    repeats: int
+    q: int
+    seed: int
+    reason: str = ""
+    stats: dict[str, Any] = field(default_factory=dict, compare=False)
+    seconds: float = field(default=0.0, compare=False)
+
+    def __bool__(self) -> NoReturn:
+        raise TypeError("a sample proves nothing, and is no truth value: look at .verdict and .chance")
+
+    def summary(self) -> str:
+        """Return a sentence that says what is claimed and what is not."""
+        if self.verdict is SampleVerdict.UNDECIDED:
+            return f"undecided: {self.reason} (samples prove nothing in any case)"
+        return (
+            f"likely {self.r}-robust, not a proof: {self.repeats} random samples of {self.nodes} nodes are all "
+            f"{self.q}-robust; of a network that is not {self.r}-robust they are with probability {self.chance:.2g} "
+            f"at most"
+        )
