@@ -12,9 +12,13 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
+from certificates.direct import check_direct
+from certificates.envelope import id_list, require_keys
 from certificates.errors import MalformedCertificate, RejectedCertificate
+from certificates.graph import CanonicalGraph
+from certificates.stream import Stream
 
-__all__ = ["MAX_WORK", "Derivation"]
+__all__ = ["MAX_WORK", "Derivation", "check_derivation"]
 
 #: Arcs that all steps together may make or copy beside those that they list; a node counts like eight.
 MAX_WORK = 2**22
@@ -188,3 +192,26 @@ class Derivation:
     def reject(self, why: str) -> RejectedCertificate:
         """Return the error that says what is wrong, and where; step 0 is the seed."""
         return RejectedCertificate(f"derivation, step {self.step}: {why}", "derivation")
+
+
+def check_derivation(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any], body: Stream) -> int:
+    """A seed proven by ``proof``, steps that make the graph of it, and ``ids``: which node of it each node made is."""
+    seed = require_keys(evidence["seed"], "the seed", "nodes arcs r s")
+    proof = require_keys(evidence["proof"], "the proof of the seed", "kind")
+    made = Derivation(seed["nodes"], seed["arcs"], seed["r"], seed["s"])
+    hears = tuple(tuple(sorted(heard)) for heard in made.hears)
+    start = CanonicalGraph(tuple(range(len(hears))), hears, "")
+    tree_nodes = check_direct(start, made.r, made.s, proof, body)
+    made.take(evidence["steps"])
+    made.weaken(r, s)
+    ids = id_list(evidence["ids"], graph.n, "ids")
+    if len(ids) != len(made.hears) or sorted(ids) != list(range(graph.n)):
+        raise RejectedCertificate(
+            f"ids do not name each of the {graph.n} nodes once, for {len(made.hears)} nodes made", "derivation"
+        )
+    for i, heard in zip(ids, made.hears, strict=True):
+        if {ids[j] for j in heard} != set(graph.hears[i]):
+            raise RejectedCertificate(
+                f"node {i} of the graph hears others than in the graph that the steps make", "derivation"
+            )
+    return tree_nodes

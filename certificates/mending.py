@@ -23,12 +23,13 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
+from certificates.direct import check_violation
 from certificates.envelope import id_set, open_certificate, require_about, require_keys
 from certificates.errors import MalformedCertificate, RejectedCertificate
 from certificates.graph import CanonicalGraph, decode_graph, digest, encode_graph
 from certificates.stream import Blocks, Stream
 from certificates.tolerance import check_sets, verify_tolerance
-from certificates.verification import check_violation, verify
+from certificates.verification import verify
 
 __all__ = ["FORMAT", "MAX_LOOKS", "VerifiedMendingClaim", "verify_mending"]
 

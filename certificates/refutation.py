@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from typing import TypeVar
+
 from certificates.graph import CanonicalGraph
 from certificates.masks import Contradiction
 from certificates.rules import Question, State, excludes, settle
 from certificates.stream import Blocks, Stream
 from certificates.walk import Walk
 
-__all__ = ["SATISFIED", "check_refutation"]
+__all__ = ["SATISFIED", "Replay", "check_refutation"]
 
 #: Kinds of literals of a branch.
 SATISFIED, MEMBER = 0, 1
+
+S = TypeVar("S", bound=State)
 
 
 def check_refutation(graph: CanonicalGraph, r: int, s: int, body: Blocks | Stream) -> int:
@@ -28,10 +32,10 @@ def check_refutation(graph: CanonicalGraph, r: int, s: int, body: Blocks | Strea
         When a step does not hold, or the tree is incomplete, or something follows it.
     """
     question = Question.of(graph, r, s)
-    return _Replay(question, graph.n, body).run(State.of_all_pairs(graph.n))
+    return Replay[State](question, graph.n, body).run(State.of_all_pairs(graph.n))
 
 
-class _Replay(Walk[State]):
+class Replay(Walk[S]):
     """A walk through states of violating pairs."""
 
     opcodes = 10
@@ -40,24 +44,28 @@ class _Replay(Walk[State]):
         super().__init__(n, body)
         self.question = question
 
-    def settle(self, state: State) -> None:
+    def settle(self, state: S) -> None:
+        """Apply all rules but *count*."""
         settle(self.question, state)
 
-    def exclude(self, state: State, which: int) -> None:
+    def exclude(self, state: S, which: int) -> None:
         """Read j i1 [i2] and check that *count* excludes j from the satisfied nodes of its side."""
         side, node = which & 1, self.number(self.n)
         if not state.P[side] >> node & 1:
             raise self.reject(f"EXCLUDE of node {node}, which is no candidate")
-        blockers = [self.number(self.n) for _ in range(1 + (which >> 1))]
-        if len(set(blockers)) < len(blockers) or not all(state.T[1 - side] >> i & 1 for i in blockers):
-            raise self.reject(f"the blockers {blockers} are not different satisfied nodes of the other side")
-        if not excludes(self.question, state, side, node, blockers):
-            raise self.reject(f"the blockers {blockers} do not exclude node {node}")
+        self.count(state, side, node, [self.number(self.n) for _ in range(1 + (which >> 1))])
         if state.T[side] >> node & 1:
             raise Contradiction
         state.P[side] &= ~(1 << node)
 
-    def branch(self, state: State, kind: int, side: int, node: int) -> tuple[State, State] | None:
+    def count(self, state: S, side: int, node: int, blockers: list[int]) -> None:
+        """Check that *count* excludes the node by these blockers."""
+        if len(set(blockers)) < len(blockers) or not all(state.T[1 - side] >> i & 1 for i in blockers):
+            raise self.reject(f"the blockers {blockers} are not different satisfied nodes of the other side")
+        if not excludes(self.question, state, side, node, blockers):
+            raise self.reject(f"the blockers {blockers} do not exclude node {node}")
+
+    def branch(self, state: S, kind: int, side: int, node: int) -> tuple[S, S] | None:
         """*satisfied*: node v is satisfied on this side, or not. *member*: it is a member of this side, or not."""
         bit = 1 << node
         may, must = (state.P, state.T) if kind == SATISFIED else (state.C, state.F)
@@ -69,5 +77,6 @@ class _Replay(Walk[State]):
         state.P[side] &= ~bit
         return true, state
 
-    def mirror(self, state: State, node: int) -> None:
+    def mirror(self, state: S, node: int) -> None:
+        """Let the node be satisfied on side 2 no more than on side 1."""
         state.P[1] &= ~(1 << node)

@@ -12,11 +12,12 @@ docs/certificate-format.md has the proofs, under the same names.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Self
 
 from certificates.graph import CanonicalGraph
 from certificates.masks import Contradiction, Network, masks_of
 
-__all__ = ["Question", "State", "excludes", "settle"]
+__all__ = ["Question", "State", "excludes", "member", "peel_and_force", "settle", "share", "spent"]
 
 
 @dataclass(slots=True)
@@ -47,14 +48,14 @@ class State:
         self.allowed = [0, 0]
 
     @classmethod
-    def of_all_pairs(cls, n: int) -> State:
+    def of_all_pairs(cls, n: int) -> Self:
         """Return the state that stands for every violating pair."""
         everyone = (1 << n) - 1
         return cls([everyone, everyone], [everyone, everyone], [0, 0], [0, 0])
 
-    def copy(self) -> State:
+    def copy(self) -> Self:
         """Return an independent state of the same sets, to be settled."""
-        return State(self.C[:], self.P[:], self.F[:], self.T[:])
+        return type(self)(self.C[:], self.P[:], self.F[:], self.T[:])
 
 
 def settle(question: Question, state: State) -> None:
@@ -66,23 +67,23 @@ def settle(question: Question, state: State) -> None:
     state.allowed = [question.spare, question.spare]
     looked_at: list[tuple[int, int, int, int] | None] = [None, None]
     while True:
-        _member(question, state)
+        member(question, state)
         changed = False
         for side in (0, 1):
-            _spent(state, side)
+            spent(state, side)
             last, sure = looked_at[side], state.P[side] | state.F[side]
             now = (min(state.allowed[side], state.left), state.T[side], state.C[side], sure)
             looked_at[side] = now
             nodes = state.P[side]
             if last is not None and last[0] == now[0]:
                 nodes &= (now[1] & ~last[1]) | question.hearing((last[2] ^ now[2]) | (last[3] ^ now[3]))
-            changed |= _peel_and_force(question, state, side, nodes)
-        if not changed and not _share(question, state):
+            changed |= peel_and_force(question, state, side, nodes)
+        if not changed and not share(question, state):
             break
     state.allowed = [min(allowed, state.left) for allowed in state.allowed]
 
 
-def _member(question: Question, state: State) -> None:
+def member(question: Question, state: State) -> None:
     """*member*: satisfied nodes are members, and a member of one side is no candidate of the other.
 
     Members that cannot be satisfied are exempt, which at most s - 1 nodes are; and each side holds a satisfied node.
@@ -102,14 +103,14 @@ def _member(question: Question, state: State) -> None:
         raise Contradiction
 
 
-def _spent(state: State, side: int) -> None:
+def spent(state: State, side: int) -> None:
     """*spent*: a side that is allowed no further exempt node has satisfied members only, beside those known exempt."""
     if not min(state.allowed[side], state.left):
         state.C[side] = state.P[side] | state.F[side]
         state.T[side] = state.P[side] & state.F[side]
 
 
-def _peel_and_force(question: Question, state: State, side: int, nodes: int) -> bool:
+def peel_and_force(question: Question, state: State, side: int, nodes: int) -> bool:
     """*peel* and *force*: compare how many members each of ``nodes`` can hear with its need; return whether it is news.
 
     A member is in ``sure = P | F`` or is a further exempt node. When fewer than k_i nodes can be members within N_i,
@@ -141,7 +142,7 @@ def _peel_and_force(question: Question, state: State, side: int, nodes: int) -> 
     return changed
 
 
-def _share(question: Question, state: State) -> bool:
+def share(question: Question, state: State) -> bool:
     """*share*: exempt nodes that one side cannot do without are not left for the other; return whether that is news.
 
     The other rules have come to rest, so ``left`` of them would suffice for either side: P is Q.

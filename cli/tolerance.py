@@ -289,7 +289,7 @@ def _stopped(
 
 def _lines(report: Report, source: str, console: Console) -> Iterator[str]:
     """Yield the gate, the table and a sentence for each outcome; theorems and evidence where -v asks for them."""
-    from robustness.threat_models.summaries import sentences_of
+    from robustness.threat_models.results import sentences_of
 
     graph, table = report.graph, report.table
     if report.required is not None:
@@ -313,7 +313,7 @@ def _lines(report: Report, source: str, console: Console) -> Iterator[str]:
 
 def _in_one_line(table: ToleranceTable) -> str:
     """Return the largest f guaranteed under each model, and where something is not known the smallest f refuted."""
-    from robustness.threat_models.summaries import number
+    from robustness.threat_models.results import number
 
     told = (
         f"{result.model} {number(result.guaranteed)}"
@@ -340,7 +340,7 @@ def _gate(report: Report) -> str:
 
 
 def _table(table: ToleranceTable) -> Iterator[str]:
-    from robustness.threat_models.summaries import number
+    from robustness.threat_models.results import number
 
     yield f"{'model':<17}{'guaranteed':>10}{'refuted':>9}  between"
     for result in table.results:

@@ -18,10 +18,7 @@ answer, not an error.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from robustness.results import Bounds
+from typing import Any
 
 __all__ = [
     "InternalError",
@@ -69,13 +66,13 @@ class Undecided(RobustnessError):
 
     Attributes
     ----------
-    bounds : Bounds or None
+    bounds : robustness.results.Bounds or None
         What is proven about the number that was asked for.
     profile : mapping or None
         The part of a robustness profile that is proven.
     """
 
-    def __init__(self, message: str, *, bounds: Bounds | None = None, profile: Mapping[int, int] | None = None) -> None:
+    def __init__(self, message: str, *, bounds: Any = None, profile: Mapping[int, int] | None = None) -> None:
         super().__init__(message)
         self.bounds = bounds
         self.profile = profile

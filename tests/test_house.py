@@ -6,11 +6,13 @@ import ast
 import configparser
 import email
 import importlib.metadata
+import io
 import itertools
 import os
 import re
 import subprocess
 import sys
+import tokenize
 import tomllib
 import zipfile
 from collections.abc import Iterator
@@ -54,6 +56,19 @@ def imports(path: Path, *, at_import: bool = False) -> Iterator[str]:
             pending.extend(node.orelse)
             continue
         pending.extend(ast.iter_child_nodes(node))
+
+
+def lines_of(path: Path) -> tuple[int, int]:
+    """Return the lines of code of a file, without comments and docstrings, and all its lines."""
+    text = path.read_text(encoding="utf-8")
+    code: set[int] = set()
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.string.strip() and token.type != tokenize.COMMENT:
+            code |= set(range(token.start[0], token.end[0] + 1))
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node) is not None:
+            code -= set(range(node.body[0].lineno, (node.body[0].end_lineno or 0) + 1))
+    return len(code), len(text.splitlines())
 
 
 def place(path: Path) -> str:
@@ -145,6 +160,27 @@ class TestArrows:
         for path in sources("certificates"):
             foreign = {name.split(".")[0] for name in imports(path)} - sys.stdlib_module_names - {"certificates"}
             assert not foreign, f"{path.relative_to(ROOT)} imports {foreign}"
+
+    def test_the_layers_of_the_kernel_call_those_above_them(self) -> None:
+        """As docs/trust.md lists them, with sizes in lines of code and in all."""
+        text = (ROOT / "docs" / "trust.md").read_text(encoding="utf-8")
+        table = re.findall(r"^\| [^|`]*\(((?:`\w+`(?:, )?)+)\) \| (\d+) \| ([\d,]+) \|$", text, re.MULTILINE)
+        parts = re.findall(r"^\| `(\w+)` \| [^|]* \| (\d+) \| (\d+) \|$", text, re.MULTILINE)
+        above: set[str] = set()
+        for names, *sizes in table:
+            layer = re.findall(r"\w+", names)
+            above |= {f"certificates.{name}" for name in layer}
+            files = [ROOT / "certificates" / f"{name}.py" for name in layer]
+            for path in files:
+                ours = {name.rpartition(".")[0] for name in imports(path) if name.startswith("certificates.")}
+                assert ours <= above, f"{path.name} imports from {ours - above}, a layer below it"
+            for said, lines in zip(sizes, zip(*map(lines_of, files), strict=True), strict=True):
+                assert abs(int(said.replace(",", "")) - sum(lines)) <= 10, f"{names}: {sum(lines)} lines"
+        assert {f"certificates.{path.stem}" for path in sources("certificates")} - above == {"certificates.__init__"}
+        assert [name for name, *_ in parts] == re.findall(r"\w+", table[0][0])
+        for name, *sizes in parts:
+            for said, lines in zip(sizes, lines_of(ROOT / "certificates" / f"{name}.py"), strict=True):
+                assert abs(int(said) - lines) <= 5, f"{name}: {lines} lines"
 
     def test_the_kernel_runs_on_a_bare_python(self, tmp_path: Path) -> None:
         modules = [

@@ -58,7 +58,7 @@ class TestBadNodeLinkJson:
             ('{"nodes": {}, "edges": []}', "'nodes' is a list, not an object"),
             ('{"nodes": [], "edges": 7}', "'edges' is a list, not a number"),
             ('{"nodes": [], "edges": [], "links": []}', "keep one"),
-            ('{"nodes": [], "nodes": [], "edges": []}', "'nodes' stands twice"),
+            ('{"nodes": [], "nodes": [], "edges": []}', ": the key 'nodes' stands twice"),
             ('{"nodes": [{"id": 1, "id": 2}], "edges": []}', "'id' stands twice"),
             ('{"directed": 1, "nodes": [], "edges": []}', "'directed' is true or false"),
             ('{"nodes": [{}], "edges": []}', "nodes[0]: has no 'id'"),

@@ -14,7 +14,7 @@ from certificates import verify
 from certificates.graph import Label, label_key
 from robustness.answers import Question, Verdict
 from robustness.constructions.guarantee import Guarantee, Guaranteed
-from robustness.constructions.operations import carry_out, replay
+from robustness.constructions.operations import carry_out, r_beside_clique, replay
 from robustness.decision.certification import direct_evidence, encode
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InternalError, InvalidParameter, Undecided
@@ -167,8 +167,7 @@ def _most_lost(before: Digraph, after: Digraph) -> int:
 
 def _joined(base: Guarantee, before: Digraph, after: Digraph) -> int:
     """Return what the lemma of join-clique promises for r."""
-    size, least = after.n - before.n, int(before.in_degrees.min()) if before.n else 0
-    return min(base.r + size, (after.n + 1) // 2, max(size, (size + least) // 2 + 1))
+    return r_beside_clique(base.r, before, after.n - before.n)
 
 
 def _weaken(conclusion: Guarantee) -> _Step:

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from robustness.constructions.family import require
+from robustness.definitions import largest_conceivable_r
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -180,7 +181,7 @@ def multipartite_r(sizes: Sequence[int]) -> int:
     """
     n = sum(sizes)
     r = 1
-    while r < (n + 1) // 2 and not _multipartite_pair_exists(sizes, n, r + 1):
+    while r < largest_conceivable_r(n) and not _multipartite_pair_exists(sizes, n, r + 1):
         r += 1
     return r
 

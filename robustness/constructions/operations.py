@@ -16,7 +16,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Hashable, Iterable, Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from certificates.graph import Label, label_key
 from robustness.constructions.family import require
@@ -28,9 +28,6 @@ from robustness.errors import InvalidGraph, InvalidParameter, Undecided
 from robustness.json_labels import from_json
 from robustness.results import Verdict
 
-if TYPE_CHECKING:
-    pass
-
 __all__ = [
     "add_arcs",
     "add_node",
@@ -39,6 +36,7 @@ __all__ = [
     "grow",
     "guaranteed",
     "join_clique",
+    "r_beside_clique",
     "remove_in_arcs",
     "remove_nodes",
     "replay",
@@ -264,10 +262,15 @@ def join_clique(base: Start, size: int) -> Guaranteed:
     everyone = [*graph.labels, *fresh]
     arcs = [(u, v) for u in everyone for v in fresh if u != v] + [(u, v) for u in fresh for v in graph.labels]
     new = _with_nodes(graph, fresh, arcs)
-    least = int(graph.in_degrees.min()) if graph.n else 0
-    r = min(start.guarantee.r + size, largest_conceivable_r(new.n), max(size, (size + least) // 2 + 1))
+    r = r_beside_clique(start.guarantee.r, graph, size)
     best = max((r, 1), _after_adding(start.guarantee, graph.n))
     return _conclude(new, *best, "join-clique", {"size": size}, (start.guarantee,))
+
+
+def r_beside_clique(r: int, graph: Digraph, size: int) -> int:
+    """Return the R of :func:`join_clique` for an r-robust graph and a clique of ``size`` nodes."""
+    least = int(graph.in_degrees.min()) if graph.n else 0
+    return min(r + size, largest_conceivable_r(graph.n + size), max(size, (size + least) // 2 + 1))
 
 
 def blow_up(base: Start, copies: int, *, cliques: bool = False) -> Guaranteed:

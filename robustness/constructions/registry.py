@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from robustness.constructions import counterexamples, families, random_families
 from robustness.constructions.family import Family, KnownRobustness
+from robustness.definitions import largest_conceivable_r
 from robustness.errors import InvalidParameter
 
 if TYPE_CHECKING:
@@ -57,12 +58,8 @@ def _family(name: str) -> Family:
 _LEMMA_V = "Lemma 1 (v)"
 
 
-def _half(n: int) -> int:
-    return (n + 1) // 2
-
-
 def _complete(n: int) -> KnownRobustness:
-    return KnownRobustness(_half(n), max(n, 1), _LEMMA_V)
+    return KnownRobustness(largest_conceivable_r(n), max(n, 1), _LEMMA_V)
 
 
 def _path(n: int) -> KnownRobustness:
@@ -127,7 +124,9 @@ def _platoon(n: int, k: int) -> KnownRobustness | None:
 
 
 def _predecessor_platoon(n: int, predecessors: int, leaders: int) -> KnownRobustness:
-    return KnownRobustness(_half(leaders), None, "the leaders hear only each other; growth, Lemma 1 (vii)")
+    return KnownRobustness(
+        largest_conceivable_r(leaders), None, "the leaders hear only each other; growth, Lemma 1 (vii)"
+    )
 
 
 def _grown(n: int, r: int, **_: int) -> KnownRobustness:

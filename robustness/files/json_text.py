@@ -17,6 +17,8 @@ def parse_json(text: str) -> Any:
         return json.loads(text, object_pairs_hook=_object_without_repeats)
     except json.JSONDecodeError as problem:
         raise UnreadableTopology(f"line {problem.lineno}, column {problem.colno}: {problem.msg}") from None
+    except UnreadableTopology:
+        raise
     except ValueError as problem:  # an integer with more digits than Python converts
         raise UnreadableTopology(f"a number cannot be read: {problem}") from None
 

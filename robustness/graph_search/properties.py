@@ -124,8 +124,8 @@ class Connected:
 
 
 @dataclass(frozen=True, slots=True)
-class InDegree:
-    """Every in-degree is at least ``least`` and at most ``most`` (None: no limit)."""
+class _Range:
+    """Numbers of at least ``least`` and at most ``most`` (None: no limit)."""
 
     least: int = 0
     most: int | None = None
@@ -135,15 +135,28 @@ class InDegree:
         if self.most is not None:
             _require_at_least("most", self.most, self.least)
 
+    def has(self, number: int) -> bool:
+        """Return whether the number is in the range."""
+        return self.least <= number and (self.most is None or number <= self.most)
+
+    def told(self, low: str, high: str) -> str:
+        """Return the bounds in text, each after its own word."""
+        parts = [f"{low}>={self.least}"] if self.least > 0 or self.most is None else []
+        return " and ".join([*parts, f"{high}<={self.most}"] if self.most is not None else parts)
+
+
+@dataclass(frozen=True, slots=True)
+class InDegree(_Range):
+    """Every in-degree is at least ``least`` and at most ``most`` (None: no limit)."""
+
     def holds(self, graph: Digraph, limits: Limits = UNBOUNDED) -> bool:
         """Look at every in-degree."""
-        return all(self.least <= d and (self.most is None or d <= self.most) for d in graph.in_degrees.tolist())
+        return all(map(self.has, graph.in_degrees.tolist()))
 
     def __str__(self) -> str:
         if self.most == self.least:
             return f"{self.least}-regular"
-        low, high = f"min-degree>={self.least}", f"max-degree<={self.most}"
-        return low if self.most is None else high if self.least == 0 else f"{low} and {high}"
+        return self.told("min-degree", "max-degree")
 
 
 def regular(k: int) -> InDegree:
@@ -156,27 +169,17 @@ def regular(k: int) -> InDegree:
 
 
 @dataclass(frozen=True, slots=True)
-class Edges:
+class Edges(_Range):
     """At least ``least`` and at most ``most`` edges (None: no limit); arcs, for a directed graph."""
-
-    least: int = 0
-    most: int | None = None
-
-    def __post_init__(self) -> None:
-        _require_at_least("least", self.least, 0)
-        if self.most is not None:
-            _require_at_least("most", self.most, self.least)
 
     def holds(self, graph: Digraph, limits: Limits = UNBOUNDED) -> bool:
         """Decide it by counting the edges (arcs)."""
-        count = graph.arc_count if graph.directed else graph.arc_count // 2
-        return self.least <= count and (self.most is None or count <= self.most)
+        return self.has(graph.arc_count if graph.directed else graph.arc_count // 2)
 
     def __str__(self) -> str:
         if self.most == self.least:
             return f"edges={self.least}"
-        low, high = f"edges>={self.least}", f"edges<={self.most}"
-        return low if self.most is None else high if self.least == 0 else f"{low} and {high}"
+        return self.told("edges", "edges")
 
 
 def parse_property(text: str) -> Property:

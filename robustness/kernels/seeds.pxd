@@ -6,15 +6,15 @@ cdef number EXHAUSTIVE_NODES, _NO_PAIR
 @cython.locals(i=number)
 cpdef bint by_degree(word[::1] hears, number size, number r)
 
-@cython.locals(outside=number, members=number, exempt=number, i=number)
-cdef number _exempt(word[::1] hears, number size, number r, number side)
+@cython.locals(outside=word, members=number, exempt=number, i=number)
+cdef number _exempt(word[::1] hears, number size, number r, word side)
 
-@cython.locals(last=number, k=number, first=number, second=number)
-cdef bint _violated_again(word[::1] hears, number size, number r, number s, long long[::1] pair)
+@cython.locals(last=word, k=number, first=word, second=word)
+cdef bint _violated_again(word[::1] hears, number size, number r, number s, word[::1] pair)
 
 @cython.locals(i=number)
 cdef bint _proven(
-    word[::1] hears, number size, number r, number s, long long[::1] pair, object examine) except *
+    word[::1] hears, number size, number r, number s, word[::1] pair, object examine) except *
 
 @cython.locals(bits=word, k=number, j=number, q=number)
 cdef (number, word) _join(
@@ -25,7 +25,7 @@ cdef (number, word) _join(
 cdef number _most_linked(int[::1] seed, number size, int[::1] links, int[::1] met, number known)
 
 @cython.locals(
-    links=int[::1], met=int[::1], hears=word[::1], pair=cython.longlong[::1], tried=number, fresh=number, size=number,
+    links=int[::1], met=int[::1], hears=word[::1], pair=word[::1], tried=number, fresh=number, size=number,
     known=number, found=bint, heard_by=word, q=number, k=number, degree=number)
 cpdef find_seed(
     const long long[::1] in_indptr, const int[::1] in_indices, const long long[::1] out_indptr,

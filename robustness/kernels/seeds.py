@@ -65,7 +65,7 @@ def _violated_again(hears, size, r, s, pair):
     ----------
     hears : array of uint64, shape (size,)
     size, r, s : int
-    pair : array of int64, shape (2,)
+    pair : array of uint64, shape (2,)
         Each entry a set of nodes of the seed as bits; 0 and 0 when no pair is known.
     """
     last = 1 << (size - 1)
@@ -84,7 +84,7 @@ def _proven(hears, size, r, s, pair, examine):
     ----------
     hears : array of uint64, shape (size,)
     size, r, s : int
-    pair : array of int64, shape (2,)
+    pair : array of uint64, shape (2,)
     examine : callable
     """
     if by_degree(hears, size, r):
@@ -171,7 +171,7 @@ def find_seed(in_indptr, in_indices, out_indptr, out_indices, anchors, barred, r
     links = np.zeros(len(barred), np.int32)
     met = np.empty(len(barred), np.int32)
     hears = np.zeros(64, np.uint64)
-    pair = np.zeros(2, np.int64)
+    pair = np.zeros(2, np.uint64)
     for tried in range(len(anchors)):
         if work <= 0:
             return tried, 0

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.limits import Limits, Progress
@@ -120,7 +121,7 @@ def _first_climb(best: MendResult | None, model: str | None, n: int) -> Goal | N
         f = -1 if best is None else best.goals[0].survive
         return Goal(survive=f + 1, model=model) if f is not None and f + 1 < n else None
     r = 0 if best is None else best.goals[0].r
-    return Goal(r + 1) if r is not None and r < max(1, (n + 1) // 2) else None
+    return Goal(r + 1) if r is not None and r < max(1, largest_conceivable_r(n)) else None
 
 
 def _second_climb(best: MendResult | None, model: str | None, n: int) -> Goal | None:

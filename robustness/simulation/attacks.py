@@ -25,7 +25,7 @@ from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.json_labels import from_json
 from robustness.natural_order import in_natural_order
-from robustness.showing import Shown, listed_in_words
+from robustness.showing import Shown, labels_in_words
 from robustness.simulation.adversaries import Adversary, Alternating, Constant
 from robustness.simulation.fault_models import fault_model_named, require_fault_model
 from robustness.simulation.outcome import Outcome
@@ -121,15 +121,15 @@ class Attack(Shown):
     def evidence(self) -> list[tuple[str, str]]:
         """Return the sets, as rows of a name and a text."""
         sets = (("malicious", self.malicious), ("S1", self.S1), ("S2", self.S2))
-        return [(name, _text(self._ordered(labels))) for name, labels in sets]
+        return [(name, labels_in_words(labels)) for name, labels in sets]
 
     def story(self) -> str:
         """Return the attack in words."""
-        groups = f"S1 = {_text(self._ordered(self.S1))} at {_LOW:g}, S2 = {_text(self._ordered(self.S2))} at {_HIGH:g}"
+        groups = f"S1 = {labels_in_words(self.S1)} at {_LOW:g}, S2 = {labels_in_words(self.S2)} at {_HIGH:g}"
         scene = f"{groups}, all others at {_BETWEEN:g}"
         if not self.malicious:
             return f"{scene}; nobody need be malicious"
-        who = _text(self._ordered(self.malicious))
+        who = labels_in_words(self.malicious)
         if self.kind == "violation":
             return f"{scene}; {who} malicious, holding the start for ever"
         means = "by delays of 0 or 1 step" if self.delayed else "by telling each so"
@@ -304,7 +304,3 @@ def _require_bound(graph: Digraph, malicious: frozenset[int], f: int, model: str
     mask = np.zeros((1, graph.n), dtype=bool)
     mask[0, list(malicious)] = True
     require_fault_model(graph, mask, f, fault_model_named(model))
-
-
-def _text(labels: tuple[Label, ...]) -> str:
-    return listed_in_words(labels)

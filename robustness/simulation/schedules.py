@@ -13,7 +13,7 @@ from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from types import MappingProxyType
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -275,18 +275,21 @@ class PeriodicDelays:
 
 
 @dataclass(frozen=True, slots=True)
-class RandomDelays:
-    """Every arc and step has a delay drawn uniformly from ``0 .. bound``, from the run's own seed."""
+class _Bounded:
+    """Delays of up to ``bound`` steps, which the adversary may choose where ``adversarial`` is true."""
 
     bound: int = 2
+    adversarial: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         _require_nonnegative("the bound on delays", self.bound)
 
-    @property
-    def adversarial(self) -> bool:
-        """Whether the adversary may choose the delays: it may not."""
-        return False
+
+@dataclass(frozen=True, slots=True)
+class RandomDelays(_Bounded):
+    """Every arc and step has a delay drawn uniformly from ``0 .. bound``, from the run's own seed."""
+
+    adversarial: ClassVar[bool] = False
 
     def delays(self, view: View, past: Past) -> Steps:
         """Return the draws of this step."""
@@ -295,22 +298,12 @@ class RandomDelays:
 
 
 @dataclass(frozen=True, slots=True)
-class AdversarialDelays:
+class AdversarialDelays(_Bounded):
     """Delays chosen to keep the vehicles apart; an adversary's move may override each of them.
 
     A vehicle above the middle of the normal range hears, from every neighbour, the greatest value of the last
     ``bound + 1`` steps, and the others the least.
     """
-
-    bound: int = 2
-
-    def __post_init__(self) -> None:
-        _require_nonnegative("the bound on delays", self.bound)
-
-    @property
-    def adversarial(self) -> bool:
-        """Whether the adversary may choose the delays: it may."""
-        return True
 
     def delays(self, view: View, past: Past) -> Steps:
         """Return the delay that serves each arc's receiver worst."""
@@ -325,18 +318,8 @@ class AdversarialDelays:
 
 
 @dataclass(frozen=True, slots=True)
-class LatestDelays:
+class LatestDelays(_Bounded):
     """Every value arrives ``bound`` steps late, unless an adversary's move says otherwise."""
-
-    bound: int = 2
-
-    def __post_init__(self) -> None:
-        _require_nonnegative("the bound on delays", self.bound)
-
-    @property
-    def adversarial(self) -> bool:
-        """Whether the adversary may choose the delays: it may."""
-        return True
 
     def delays(self, view: View, past: Past) -> Steps:
         """Return the bound for every arc."""

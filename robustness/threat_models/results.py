@@ -1,9 +1,9 @@
-"""What a question about tolerance is answered with: frozen, and never more than is proven."""
+"""What a question about tolerance is answered with: frozen, and never more than is proven, in words neither."""
 
 from __future__ import annotations
 
 import enum
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -11,14 +11,14 @@ from certificates.graph import Label
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
 from robustness.showing import Shown
-from robustness.threat_models.models import ThreatModel
+from robustness.threat_models.models import THREAT_MODELS, ThreatModel
 from robustness.threat_models.parameters import Parameters
 
 if TYPE_CHECKING:
     from robustness.simulation.attacks import Attack
     from robustness.time_varying import TimeVaryingGraph
 
-__all__ = ["AttackSets", "Reason", "Standing", "ToleranceResult", "ToleranceTable"]
+__all__ = ["AttackSets", "Reason", "Standing", "ToleranceResult", "ToleranceTable", "number", "sentences_of"]
 
 
 class Standing(enum.Enum):
@@ -189,9 +189,9 @@ class ToleranceResult(Shown):
 
     def summary(self) -> str:
         """Return the result in plain words, claiming no more than the theorems do."""
-        from robustness.threat_models.summaries import summary
-
-        return summary(self)
+        where = self.threat.where
+        told = f"{where[0].upper()}{where[1:]}: {_outcome(self)}."
+        return " ".join([told, *_scope([self] if self.graph.n >= 2 else [])])
 
     def as_dict(self) -> dict[str, Any]:
         """Return the result as JSON-ready values."""
@@ -266,14 +266,12 @@ class ToleranceTable(Shown, Mapping[str, ToleranceResult]):
 
     def summary(self) -> str:
         """Return the table in one paragraph of plain words."""
-        from robustness.threat_models.summaries import table_summary
-
-        return table_summary(self)
+        graph = self.graph
+        size = f"A network of {graph.n} {'node' if graph.n == 1 else 'nodes'} and {graph.arc_count} arcs."
+        return " ".join([size, *sentences_of(self)])
 
     def evidence(self) -> list[tuple[str, str]]:
         """Return the table, as rows of a model and what is known."""
-        from robustness.threat_models.summaries import number
-
         return [
             (result.model, f"guaranteed f = {number(result.guaranteed)}, refuted f = {number(result.refuted)}")
             for result in self.results
@@ -282,3 +280,72 @@ class ToleranceTable(Shown, Mapping[str, ToleranceResult]):
     def as_dict(self) -> dict[str, Any]:
         """Return the table as JSON-ready values, by model."""
         return {result.model: result.as_dict() for result in self.results}
+
+
+def number(f: int | None) -> str:
+    """Return an f as people write it: ``none`` for -1 and None."""
+    return "none" if f is None or f < 0 else str(f)
+
+
+def _outcome(result: ToleranceResult) -> str:
+    """Return what is known under one model, without saying which."""
+    if result.graph.n < 2:
+        return "fewer than two nodes cannot disagree"
+    parts = [_promised(result), _refuted(result)]
+    standings = {f: result.standing(f).value for f in result.between}
+    late = [str(f) for f, standing in standings.items() if standing == "undecided"]
+    unsaid = [str(f) for f, standing in standings.items() if standing == "open"]
+    if late:
+        parts.append(f"f = {', '.join(late)} {'was' if len(late) == 1 else 'were'} not decided within the limit")
+    if unsaid:
+        why = next(reason.evidence for reason in result.reasons if reason.standing.value == "open")
+        parts.append(f"f = {', '.join(unsaid)} {'is' if len(unsaid) == 1 else 'are'} open: {why}")
+    return "; ".join(part for part in parts if part)
+
+
+def sentences_of(table: ToleranceTable) -> list[str]:
+    """Return a sentence for each outcome, which models with one and the same share, and what the promises rest on."""
+    if table.graph.n < 2:
+        return ["Fewer than two nodes cannot disagree, whatever the threat."]
+    sentences: dict[str, list[str]] = {}
+    for result in table.results:
+        sentences.setdefault(_outcome(result), []).append(result.threat.where)
+    told = [f"{'; and '.join(where)}: {outcome}." for outcome, where in sentences.items()]
+    if len(sentences) == 1 and len(table) == len(THREAT_MODELS):
+        told = [f"under every threat model: {next(iter(sentences))}."]
+    return [*(sentence[0].upper() + sentence[1:] for sentence in told), *_scope(table.results)]
+
+
+def _scope(results: Sequence[ToleranceResult]) -> Iterator[str]:
+    """Yield what the promises rest on."""
+    given = results[0].parameters if results else None
+    if given is not None:
+        yield f"For {given.told([result.threat for result in results])}."
+    elif any(result.guaranteed >= 0 for result in results):
+        yield "What is guaranteed holds for the update rules, weights and gains that its theorem names."
+    sequence = results[0].sequence if results else None
+    if sequence is not None and sequence.period is None:
+        yield "A finite trace is taken to go on as it was: no new link, and every window as good as those seen."
+
+
+def _promised(result: ToleranceResult) -> str:
+    f = result.guaranteed
+    if f < 0:
+        if result.refuted == 0:
+            return ""
+        is_open = result.standing(0).value == "open"
+        return "nothing is guaranteed" if is_open else "nothing is guaranteed within the limit"
+    if f == 0:
+        return "agreement is guaranteed only while nobody lies (f = 0)"
+    return f"agreement is guaranteed for f = {f}" + (" and below" if f > 1 else "")
+
+
+def _refuted(result: ToleranceResult) -> str:
+    f, sets = result.refuted, result.attack_sets
+    if f is None or sets is None:
+        return "no attack is known within the limit"
+    if f == 0:
+        return "agreement fails even though nobody lies: two groups hear nothing from outside"
+    if not sets.M:
+        return f"for f = {f} it stays split for ever without a single liar, since everybody discards too much"
+    return f"for f = {f} an attack by {len(sets.M)} {'liar' if len(sets.M) == 1 else 'liars'} keeps it split for ever"

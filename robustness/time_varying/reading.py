@@ -28,6 +28,7 @@ from robustness.digraph import Digraph
 from robustness.errors import InvalidGraph, InvalidParameter, UnreadableTopology
 from robustness.files import FORMATS, ReadingOptions, decode_topology
 from robustness.files.front import format_suffix, read_bytes, read_with
+from robustness.files.json_text import parse_json, plain_label
 from robustness.files.text import decode_utf8, one_line
 from robustness.natural_order import natural_key
 from robustness.time_varying.contacts import bin_length, decode_contacts
@@ -196,38 +197,23 @@ def _node_link_graphs(header: dict[str, Any], steps: list[Any], step_name: _Step
 def _nodes(value: Any) -> list[Hashable]:
     if not isinstance(value, list):
         raise UnreadableTopology("'nodes' is a list of labels")
-    return [_label(item["id"] if isinstance(item, dict) and "id" in item else item, "'nodes'") for item in value]
+    return [
+        plain_label(item["id"] if isinstance(item, dict) and "id" in item else item, "'nodes': a label")
+        for item in value
+    ]
 
 
 def _arcs(step: list[Any], name: str) -> list[tuple[Hashable, Hashable]]:
     for place, arc in enumerate(step):
         if not isinstance(arc, list) or len(arc) != 2:
             raise UnreadableTopology(f"{name}: arc {place}: is a list of two labels [u, v]: v hears u")
-    return [(_label(u, name), _label(v, name)) for u, v in step]
-
-
-def _label(value: Any, place: str) -> Hashable:
-    if type(value) is list:
-        return tuple(_label(part, place) for part in value)
-    if type(value) is int or type(value) is str:
-        return value
-    raise UnreadableTopology(f"{place}: a label is an integer, a string or a list of these, not {json.dumps(value)}")
+    return [(plain_label(u, f"{name}: a label"), plain_label(v, f"{name}: a label")) for u, v in step]
 
 
 def _parse(text: str, place: str) -> Any:
+    """Return what JSON text holds; ``place`` goes before what is said about an error."""
     try:
-        return json.loads(text, object_pairs_hook=_object_without_repeats)
-    except json.JSONDecodeError as problem:
-        where = place or f"line {problem.lineno}, "
-        raise UnreadableTopology(f"{where}column {problem.colno}: {problem.msg}") from None
+        return parse_json(text)
     except UnreadableTopology as problem:
-        raise UnreadableTopology(f"{place}{problem}") from None
-    except ValueError as problem:  # an integer with more digits than Python converts
-        raise UnreadableTopology(f"{place}a number cannot be read: {problem}") from None
-
-
-def _object_without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) < len(pairs):
-        raise UnreadableTopology("a key stands twice in one object: keep one")
-    return found
+        # A document that is one line of a file is counted as line 1; ``place`` says which line of the file it is.
+        raise UnreadableTopology(place + str(problem).removeprefix("line 1, " if place else "")) from None

@@ -16,10 +16,14 @@ import pytest
 import robustness as rb
 from certificates import RejectedCertificate
 from certificates.graph import decode_graph
+from certificates.masks import Contradiction
+from certificates.rules import State, settle
 from robustness.constructions import blow_up, certify_derivation, guaranteed
 from robustness.decision.certification import certify, encode
 from robustness.decision.veripb import export
 from robustness.decision.veripb.inequalities import Model
+from robustness.decision.veripb.proof import SYNTAXES, Proof
+from robustness.decision.veripb.settling import Knowledge, Settling
 from robustness.errors import InvalidParameter
 from tests.certificates.forging import certificate as forged
 from tests.certificates.forging import claims, wander
@@ -159,6 +163,34 @@ def test_every_rule_of_a_refutation_is_exported() -> None:
     assert all("x0 -> y0" in line for line in swaps)
     assert "q1 -> 0" in counters
     assert "rup 1 q1 >= 1 ;" in counters
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_states_settle_as_they_do_in_the_kernel(seed: int) -> None:
+    """Asked about one node at a time, the kernel's rules come to the state that the kernel comes to, or contradict."""
+    draw, contradictions, settled = random.Random(seed), 0, 0
+    for _ in range(30):
+        n = draw.randint(3, 9)
+        G = nx.gnp_random_graph(n, draw.uniform(0.3, 1), seed=draw.randrange(10**6), directed=draw.random() < 0.5)
+        model = Model.of(decode_graph(network(G).canonical_bytes()), draw.randint(1, 4), draw.randint(1, min(n, 4)))
+        ours, kernels = Knowledge.of_all_pairs(n), State.of_all_pairs(n)
+        for _ in range(draw.randint(0, 4)):
+            sets, side, bit = draw.choice("TFP"), draw.randrange(2), 1 << draw.randrange(n)
+            for state in (ours, kernels):
+                getattr(state, sets)[side] ^= bit
+        try:
+            settle(model.question, kernels)
+        except Contradiction:
+            contradictions += 1
+            with pytest.raises(Contradiction):
+                Settling(model, model, Proof(model, SYNTAXES["3.0"]), []).settle(ours)
+            continue
+        settled += 1
+        Settling(model, model, Proof(model, SYNTAXES["3.0"]), []).settle(ours)
+        for name in ("C", "P", "F", "T", "left", "allowed"):
+            assert getattr(ours, name) == getattr(kernels, name)
+    assert contradictions
+    assert settled
 
 
 # The model says what the definition says

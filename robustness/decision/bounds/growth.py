@@ -115,7 +115,7 @@ def find_growth(graph: Digraph, r: int, s: int = 1, *, steps: Steps | None = Non
 
 
 def _is_robust(
-    r: int, s: int, steps: Steps, hears: npt.NDArray[np.uint64], size: int, pair: npt.NDArray[np.int64]
+    r: int, s: int, steps: Steps, hears: npt.NDArray[np.uint64], size: int, pair: npt.NDArray[np.uint64]
 ) -> bool:
     """Decide for a seed, by all its subsets, whether it is (r,s)-robust; leave a violating pair of it in ``pair``.
 

@@ -1,15 +1,18 @@
-"""Settling a state as the kernel does, and writing down what unit propagation would not see by itself.
+"""Settling a state by the kernel's rules, and writing down what unit propagation would not see by itself.
 
 For s = 1 that is nothing. For s > 1 the bounds on exempt nodes have to be brought together with the needs of nodes;
-see :mod:`~robustness.decision.veripb.transcript`. The settled state does not depend on the order of the rules, so the
-states here are those of the kernel, and branches close where they close there.
+see :mod:`~robustness.decision.veripb.transcript`. Who is peeled and who is forced is found by
+:mod:`certificates.rules`, asked about one node at a time; what it changes tells which sum the checker needs. The
+settled state does not depend on the order of the rules, so branches close where they close in the kernel.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Self
 
 from certificates.masks import Contradiction
+from certificates.rules import State, member, peel_and_force, settle, share, spent
 from robustness.decision.veripb.inequalities import Model, negated
 from robustness.decision.veripb.proof import Proof
 
@@ -26,33 +29,25 @@ def ids(mask: int) -> list[int]:
     return found
 
 
-class Knowledge:
-    """A state: bit masks C, P, F, T of both sides, bounds on further exempt nodes, and how many are known to be needed.
+class Knowledge(State):
+    """A state of the kernel, with how many exempt nodes are known to be needed, and whether both sides are alike.
 
     ``needed[k] = m > 0`` says that by a clause of the proof side k has at least m exempt nodes under what is assumed.
     ``symmetric`` says that both sides have the same sets, so that a root may follow.
     """
 
-    __slots__ = ("C", "F", "P", "T", "allowed", "left", "needed", "symmetric")
+    __slots__ = ("needed", "symmetric")
 
-    def __init__(
-        self, C: list[int], P: list[int], F: list[int], T: list[int], needed: list[int], symmetric: bool = False
-    ) -> None:
-        self.C, self.P, self.F, self.T = C, P, F, T
-        self.needed = needed
-        self.symmetric = symmetric
-        self.left = 0
-        self.allowed = [0, 0]
+    def __init__(self, C: list[int], P: list[int], F: list[int], T: list[int]) -> None:
+        super().__init__(C, P, F, T)
+        self.needed = [0, 0]
+        self.symmetric = False
 
-    @classmethod
-    def of_all_pairs(cls, n: int) -> Knowledge:
-        """Return the state that knows nothing."""
-        everyone = (1 << n) - 1
-        return cls([everyone, everyone], [everyone, everyone], [0, 0], [0, 0], [0, 0], symmetric=True)
-
-    def copy(self) -> Knowledge:
+    def copy(self) -> Self:
         """Return an independent state of the same sets, not to be followed by a root."""
-        return Knowledge(self.C[:], self.P[:], self.F[:], self.T[:], self.needed[:])
+        other = super().copy()
+        other.needed = self.needed[:]
+        return other
 
     def exempt(self, side: int) -> int:
         """Return how many nodes of this side are exempt for certain."""
@@ -65,7 +60,7 @@ def sides(state: Knowledge, side: int) -> tuple[int, ...]:
 
 
 class Settling:
-    """The rules *member*, *spent*, *peel*, *force* and *share*, and the sums and clauses that go with them."""
+    """The sums and clauses that go with the rules *peel*, *force* and *share*."""
 
     def __init__(self, model: Model, whole: Model, proof: Proof, assumed: Sequence[str]) -> None:
         self.model = model
@@ -74,63 +69,51 @@ class Settling:
         self.proof = proof
         #: The literals assumed at the moment; shared with the derivation.
         self.assumed = assumed
-        self.spare = model.s - 1
         #: For m, per side: the places of "fewer than m exempt, or the counter is true" and of the cap on this side.
         self.counters: dict[int, tuple[list[int], list[int]]] = {}
 
     def settle(self, state: Knowledge) -> None:
-        """Apply the rules until nothing changes, or raise :class:`~certificates.rules.Contradiction`."""
-        state.allowed = [self.spare, self.spare]
+        """Apply the rules until nothing changes, or raise :class:`~certificates.masks.Contradiction`."""
+        question = self.model.question
+        question.looks = 0  # The kernel's bound on them was kept when the certificate was verified.
+        if not question.spare:
+            settle(question, state)
+            return
+        state.allowed = [question.spare, question.spare]
         while True:
-            self.member(state)
+            member(question, state)
             changed = False
             for side in (0, 1):
-                if not min(state.allowed[side], state.left):
-                    state.C[side] = state.P[side] | state.F[side]
-                    state.T[side] = state.P[side] & state.F[side]
+                spent(state, side)
                 changed |= self.peel_and_force(state, side)
             if not changed and not self.share(state):
                 break
         state.allowed = [min(allowed, state.left) for allowed in state.allowed]
 
-    def member(self, state: Knowledge) -> None:
-        """Apply *member*; it is all propagation over the model."""
-        C, P, F, T = state.C, state.P, state.F, state.T
-        F[0] |= T[0]
-        F[1] |= T[1]
-        C[0] &= ~F[1]
-        C[1] &= ~F[0]
-        for side in (0, 1):
-            P[side] &= C[side]
-            if F[side] & ~C[side] or T[side] & ~P[side] or not P[side]:
-                raise Contradiction
-        state.left = self.spare - state.exempt(0) - state.exempt(1)
-        if state.left < 0:
-            raise Contradiction
-
     def peel_and_force(self, state: Knowledge, side: int) -> bool:
-        """Apply *peel* and *force* in one pass and write the sums they need; return whether a set changed."""
-        possible, members, satisfied = state.P[side], state.F[side], state.T[side]
-        sure = possible | members
-        loose = state.C[side] & ~sure
+        """Apply *peel* and *force* to one node after another; return whether a set changed.
+
+        Where fewer may be exempt than i hears candidates outside D, the checker needs a sum to see the change.
+        """
+        changed = False
         spared = min(state.allowed[side], state.left)
-        for i in ids(possible):
-            heard, need, bit = self.model.question.hears[i], self.model.question.need[i], 1 << i
-            inside = (heard & sure).bit_count()
-            extra = (heard & loose).bit_count()
-            reach = inside + min(extra, spared)
-            forced = bit & satisfied and reach == need
-            if 0 < spared < extra and (reach < need or forced):
-                self.exempt_for(side, i, heard & loose, state)
-            if reach < need:
-                if bit & satisfied:
-                    raise Contradiction
-                possible &= ~bit
-            elif forced:
-                members |= heard & (sure | loose if extra <= spared else sure)
-        changed = (possible, members) != (state.P[side], state.F[side])
-        state.P[side], state.F[side] = possible, members
+        for i in ids(state.P[side]):
+            loose = self.loose(state, side, i)
+            in_need = 0 < spared < loose.bit_count()
+            try:
+                news = peel_and_force(self.model.question, state, side, 1 << i)
+            except Contradiction:
+                if in_need:
+                    self.exempt_for(side, i, loose, state)
+                raise
+            if news and in_need:
+                self.exempt_for(side, i, loose, state)
+            changed |= news
         return changed
+
+    def loose(self, state: State, side: int, i: int) -> int:
+        """Return the nodes that i hears which could only be exempt members of this side."""
+        return self.model.question.hears[i] & state.C[side] & ~(state.P[side] | state.F[side])
 
     def exempt_for(self, side: int, i: int, loose: int, state: Knowledge) -> None:
         """Write the sum "of the ``loose`` nodes that i hears, no more are members than may yet be exempt".
@@ -150,47 +133,36 @@ class Settling:
 
     def share(self, state: Knowledge) -> bool:
         """Apply *share*, write clauses on the exempt nodes each side needs; return whether that is news."""
-        changed = False
-        for side in (0, 1) if state.left else ():
-            other = 1 - side
-            # Since the state is settled, all that are left suffice.
-            t = next(t for t in range(state.left + 1) if self.suffices(state, other, t, 0))
-            if state.left - t < min(state.allowed[side], state.left):
-                state.allowed[side] = state.left - t
-                changed = True
+        before = state.allowed[:]
+        news = share(self.model.question, state)
+        for side in (0, 1):
+            if state.allowed[side] != before[side]:
+                other, t = 1 - side, state.left - state.allowed[side]
                 needed = state.exempt(other) + t
                 if needed > state.needed[other]:
                     self.need_exempt(state, other, needed, t)
-        return changed
+        return news
 
-    def suffices(self, state: Knowledge, side: int, t: int, bound: int) -> bool:
-        """Return whether with t further exempt nodes all of T, and somebody, may be satisfied on this side.
+    def rule_out(self, state: Knowledge, side: int, t: int, bound: int) -> None:
+        """Write why t further exempt nodes, which do not suffice, leave too few nodes to be satisfied on this side.
 
-        The satisfied nodes lie in the largest Q of which every node hears enough of ``Q | F`` and t other candidates.
-        With ``bound``, the place of "at most t further exempt nodes", the sums that leave no larger Q are written.
+        *peel* with this allowance, down to where somebody in T, or everybody, cannot be satisfied. ``bound`` is the
+        place of "at most t further exempt nodes".
         """
-        Q = state.P[side]
-        while Q and not state.T[side] & ~Q:
-            sure, kept = Q | state.F[side], Q
-            loose = state.C[side] & ~sure
-            for i in ids(Q):
-                heard = self.model.question.hears[i]
-                extra = heard & loose
-                if (heard & sure).bit_count() + min(t, extra.bit_count()) < self.model.question.need[i]:
-                    kept &= ~(1 << i)
-                    if bound and 0 < t < extra.bit_count():
-                        self.add_need(side, i, extra, bound)
-            if kept == Q:
-                return True
-            Q = kept
-        return False
+        trial = State(state.C[:], state.P[:], state.F[:], [0, 0])
+        trial.left, trial.allowed = t, [t, t]
+        while trial.P[side] and not state.T[side] & ~trial.P[side]:
+            for i in ids(trial.P[side]):
+                loose = self.loose(trial, side, i)
+                if peel_and_force(self.model.question, trial, side, 1 << i) and 0 < t < loose.bit_count():
+                    self.add_need(side, i, loose, bound)
 
     def need_exempt(self, state: Knowledge, side: int, m: int, t: int) -> None:
         """Derive "this side has at least m exempt nodes": fewer leave t - 1 further ones, which do not suffice."""
         few, _ = self.counter(m)
         for k in sides(state, side):
             self.proof.open_level()
-            self.suffices(state, k, t - 1, few[k])
+            self.rule_out(state, k, t - 1, few[k])
             self.proof.refuted([*self.assumed, negated(self.counter_name(k, m))])
             state.needed[k] = m
 

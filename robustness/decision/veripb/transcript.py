@@ -27,8 +27,7 @@ whether it holds the checker finds out.
 from __future__ import annotations
 
 from certificates.masks import Contradiction
-from certificates.refutation import SATISFIED
-from certificates.walk import BRANCH, EXCLUDE, PROPAGATE, ROOT
+from certificates.refutation import SATISFIED, Replay
 from robustness.decision.veripb.inequalities import Model
 from robustness.decision.veripb.proof import Proof
 from robustness.decision.veripb.settling import Knowledge, Settling, ids
@@ -41,60 +40,70 @@ def derive_refutation(model: Model, whole: Model, body: bytes, proof: Proof) -> 
 
     ``model`` is the part of ``whole`` that the transcript is about.
     """
-    _Derivation(model, whole, body, proof).run()
+    start = Knowledge.of_all_pairs(model.graph.n)
+    start.symmetric = True
+    _Derivation(model, whole, body, proof).run(start)
 
 
-class _Derivation:
-    """One transcript being read, and the literals assumed so far."""
+class _Derivation(Replay[Knowledge]):
+    """The kernel's walk through a transcript, which writes what each of its steps amounts to."""
 
     def __init__(self, model: Model, whole: Model, body: bytes, proof: Proof) -> None:
+        super().__init__(model.question, model.graph.n, body)
         self.model = model
-        self.body = body
         self.proof = proof
-        self.place = 0
         self.assumed: list[str] = []
         self.settling = Settling(model, whole, proof, self.assumed)
 
-    def run(self) -> None:
-        """Walk the tree in preorder with an explicit stack of the false children to come."""
-        state = Knowledge.of_all_pairs(self.model.graph.n)
-        waiting: list[Knowledge] = []
-        while True:
-            try:
-                self.settling.settle(state)
-                self.exclusions(state)
-            except Contradiction:
-                if not waiting:
-                    self.proof.clause([])
-                    break
-                self.proof.refuted(self.assumed)
-                self.assumed.pop()
-                state = waiting.pop()
-            else:
-                waiting.append(state)
-                state = self.branch(state)
-
-    def exclusions(self, state: Knowledge) -> None:
-        """Carry out the EXCLUDE steps that come before a branch."""
-        while self.body[self.place : self.place + 1] >= bytes([EXCLUDE]):
-            while (code := self.number() - EXCLUDE) != PROPAGATE - EXCLUDE:
-                side, j = code & 1, self.number()
-                blockers = [self.number() for _ in range(1 + (code >> 1))]
-                self.count(state, side, j, blockers)
-                if state.T[side] >> j & 1:
-                    raise Contradiction
-                state.P[side] &= ~(1 << j)
+    def settle(self, state: Knowledge) -> None:
+        """Settle a state; where that closes a branch, close it in the proof."""
+        try:
             self.settling.settle(state)
+        except Contradiction:
+            self.close()
+            raise
 
-    def count(self, state: Knowledge, side: int, j: int, blockers: list[int]) -> None:
-        """Add up what makes *count* propagate: that j is not satisfied on this side.
+    def exclude(self, state: Knowledge, which: int) -> None:
+        """Carry out an EXCLUDE step; where that closes a branch, close it in the proof."""
+        try:
+            super().exclude(state, which)
+        except Contradiction:
+            self.close()
+            raise
+
+    def branch(self, state: Knowledge, kind: int, side: int, node: int) -> tuple[Knowledge, Knowledge] | None:
+        """Carry out a branch and assume its literal; ``state`` becomes the false child."""
+        children = super().branch(state, kind, side, node)
+        state.symmetric = False
+        name = self.model.satisfied if kind == SATISFIED else self.model.member
+        self.assumed.append(name(side, node))
+        self.proof.open_level()
+        return children
+
+    def mirror(self, state: Knowledge, node: int) -> None:
+        """Derive that the node of a root is not satisfied on side 2, since the sides may be swapped."""
+        super().mirror(state, node)
+        state.symmetric = True
+        self.proof.without_loss([(1, "~" + self.model.satisfied(1, node))], 1, self.settling.swap())
+
+    def close(self) -> None:
+        """Close a branch: what is assumed does not all hold; the false child needs no assumption for it."""
+        if self.assumed:
+            self.proof.refuted(self.assumed)
+            self.assumed.pop()
+        else:
+            self.proof.clause([])
+
+    def count(self, state: Knowledge, side: int, node: int, blockers: list[int]) -> None:
+        """Check the exclusion of j and add up what makes *count* propagate: that j is not satisfied on this side.
 
         With a_v the number of blockers that hear v, the needs add up to ``sum_v a_v x_v + [v in N_j] y_v`` against
         ``sum_I k_i + k_j``. Where both x_v and y_v are open, ``~x_v + ~y_v >= 1`` takes one of them away; x_j goes with
         all its weight, as j is to be on this side. Of nodes that could only be exempt members it is counted that they
         are exempt, and the bounds on those are added.
         """
-        model, hears, other = self.model, self.model.question.hears, 1 - side
+        super().count(state, side, node, blockers)
+        model, hears, other, j = self.model, self.model.question.hears, 1 - side, node
         blockers = [i for i in blockers if model.needs[other][i] is not None]
         summands = [(need, 1) for need in (model.needs[side][j], *(model.needs[other][i] for i in blockers)) if need]
         sure = state.P[other] | state.F[other]
@@ -119,33 +128,3 @@ class _Derivation:
                 bounds.append(self.settling.bound(state, other))
             summands += [(bound, bounds.count(bound)) for bound in sorted(set(bounds))]
         self.proof.add_up(summands)
-
-    def branch(self, state: Knowledge) -> Knowledge:
-        """Carry out a branch: assume its literal, leave ``state`` to the false child, and return the true child."""
-        opcode, node = self.number(), self.number()
-        kind, side = (SATISFIED, 0) if opcode == ROOT else divmod(opcode - BRANCH, 2)
-        bit = 1 << node
-        true = state.copy()
-        (true.T if kind == SATISFIED else true.F)[side] |= bit
-        if kind != SATISFIED:
-            state.C[side] &= ~bit
-        state.P[side] &= ~bit
-        state.symmetric = opcode == ROOT
-        if opcode == ROOT:
-            state.P[1] &= ~bit
-            self.proof.without_loss([(1, "~" + self.model.satisfied(1, node))], 1, self.settling.swap())
-        name = self.model.satisfied if kind == SATISFIED else self.model.member
-        self.assumed.append(name(side, node))
-        self.proof.open_level()
-        return true
-
-    def number(self) -> int:
-        """Read one number: seven bits a byte, low first."""
-        value = shift = 0
-        while True:
-            byte = self.body[self.place]
-            self.place += 1
-            value |= (byte & 127) << shift
-            if byte < 128:
-                return value
-            shift += 7
