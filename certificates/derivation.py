@@ -195,7 +195,10 @@ class Derivation:
 
 
 def check_derivation(graph: CanonicalGraph, r: int, s: int, evidence: dict[str, Any], body: Stream) -> int:
-    """A seed proven by ``proof``, steps that make the graph of it, and ``ids``: which node of it each node made is."""
+    """Check a seed, proven by ``proof``, and the steps that make the graph from it; return the tree nodes replayed.
+
+    ``ids`` tells which node of the graph each node is that was made.
+    """
     seed = require_keys(evidence["seed"], "the seed", "nodes arcs r s")
     proof = require_keys(evidence["proof"], "the proof of the seed", "kind")
     made = Derivation(seed["nodes"], seed["arcs"], seed["r"], seed["s"])

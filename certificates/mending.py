@@ -7,7 +7,7 @@ those that are there already bring nothing.
 Two things are proven here, by the certificates of other kinds alone. That the chosen actions keep their constraints,
 cost what is claimed, and make the network reach every part: by one certificate for each part about the mended graph.
 And that every pair is a violation of a part in the graph as it is. By the lemma on choices in
-docs/certificate-format.md it is then one of every graph that picks none of the actions that bring it an arc.
+docs/certificate-format.md it is then one after every choice that has none of the actions which bring it an arc.
 
 A *cover* is a family of sets of nodes such that every arc of the graph lies inside one. What it demands of a choice
 that reaches (2,s)-robustness is the lemma on spreading there; only that it is a cover is checked.

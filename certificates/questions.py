@@ -88,8 +88,7 @@ def format_of(certificate: bytes | Stream) -> str:
 
 
 def verify_any(subject_bytes: bytes, certificate_bytes: Blocks | Stream) -> Claim:
-    """Verify a certificate of whichever kind: of robustness, of joint robustness, of what malicious nodes can do, of
-    mending.
+    """Verify a certificate of whichever kind, and return its claim.
 
     ``subject_bytes`` is the canonical graph, or the canonical sequence for joint robustness.
     """

@@ -85,7 +85,7 @@ def settle(threat: Threat, state: Roles) -> None:
 
 
 def _role(threat: Threat, state: Roles) -> None:
-    """*role*: what a node is for certain excludes what it else might be, and what alone is left for it, it is."""
+    """*role*: what a node is for certain rules out its other roles, and the only role left for a node is certain."""
     P, Q, F, T = state.P, state.Q, state.F, state.T
     before: tuple[int, ...] = ()
     while before != (before := state.sets()):
@@ -105,7 +105,8 @@ def _role(threat: Threat, state: Roles) -> None:
             T[side] |= F[side] & ~Q[side]
     if state.Z & ~(Q[0] | Q[1]) or not P[0] or not P[1] or (not threat.two_faces and F[0] & F[1]):
         raise Contradiction
-    # A node that is inside and can be neither has become malicious, then normal, and so is in neither Q: found above.
+    # A node inside a side that can be neither normal nor malicious there: the rules above first put it into Z, then
+    # into T, then out of both Q, so that the first condition finds it.
 
 
 def _budget(threat: Threat, state: Roles) -> None:
@@ -210,7 +211,7 @@ def _share(threat: Threat, state: Roles) -> None:
 
 
 def excludes(threat: Threat, state: Roles, side: int, j: int, i: int) -> bool:
-    """*count*: return whether i, normal on the other side, leaves too few places to need j as normal on this.
+    """*count*: return whether i, normal on the other side, leaves too few places for j to be normal on this one.
 
     i and j need k_i + k_j places: pairs of one of them and a node that it hears inside its side. A normal node gives
     one place at most, and so does a malicious one with one face; with two faces it gives one to each that hears it.

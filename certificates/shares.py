@@ -1,9 +1,9 @@
 """A long refutation verified by several processes: each walks through the tree but for the parts that others have.
 
-An *index* lists trees within a transcript: at which byte after the header each
-begins, and its length; ascending, none inside another. It is a hint, and no part of the certificate. Of ``count``
-shares each has some of these trees as its own. It walks through all that is in no tree of the index and through its own
-trees, and passes over the others, as many bytes as the index says; that its own have the length said, it checks.
+An *index* lists trees within a transcript: at which byte after the header each begins, and its length; ascending, none
+inside another. It is a hint, and no part of the certificate. Of ``count`` shares each has some of these trees as its
+own. It walks through all that is in no tree of the index and through its own trees, and passes over the others, as many
+bytes as the index says; that its own have the length said, it checks.
 
 Theorem. When all shares of a certificate, with one index, are accepted, it proves its claim. Proof. Take the walk
 through the whole transcript, in one process, and let all be well up to the k-th tree of the index that it meets. So

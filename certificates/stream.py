@@ -27,10 +27,10 @@ class Stream:
         if isinstance(given, bytes | str) or not isinstance(given, Iterable):
             given = (given,)  # what is no bytes is refused as it comes
         self._blocks: Iterator[object] = iter(given)
-        #: Where trees begin that are somebody's share, their lengths, and whether it is the own: none, but for
-        #: :mod:`certificates.shares`.
+        #: For each tree that a share is responsible for, by the place where it begins: its length, and whether that
+        #: share is this one. Empty but for :mod:`certificates.shares`.
         self.share: dict[int, tuple[int, bool]] = {}
-        #: Tree nodes in own trees.
+        #: Tree nodes in the trees of this share.
         self.own_nodes = 0
         #: Beginnings and lengths of trees that were walked through, for those who list them; short ones are left out.
         self.trees: list[tuple[int, int]] | None = None

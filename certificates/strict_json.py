@@ -13,7 +13,7 @@ _MOST_DIGITS = 20
 
 
 class Opaque(str):
-    """The text of a number with a fraction or an exponent: no number, and no ``str`` to who asks for the exact type."""
+    """The text of a number with a fraction or an exponent: neither a number nor, by exact type, a ``str``."""
 
     __slots__ = ()
 

@@ -42,9 +42,7 @@ class ExitCode(enum.IntEnum):
 
     @classmethod
     def of_outcome(cls, outcome: str, expected: str | None) -> ExitCode:
-        """Return the code of a simulation's outcome: undecided is never a verdict, and another one than expected
-        refutes.
-        """
+        """Return the code of a simulation's outcome; one that is neither expected nor undecided refutes."""
         if outcome == "undecided":
             return cls.UNDECIDED
         return cls.REFUTED if expected not in (None, outcome) else cls.DONE

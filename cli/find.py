@@ -23,7 +23,7 @@ SCHEMA = "robustness/find/1"
 
 
 class NodeNumbers(click.ParamType):  # type: ignore[type-arg]  # generic only from click 8.4 on
-    """``5`` or ``2..7``."""
+    """A number of nodes, or a range of them: ``5`` or ``2..7``."""
 
     name = "nodes"
 

@@ -62,7 +62,7 @@ class CommandTable(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Find the command; a slip of the pen is told with what was probably meant."""
+        """Find the command; the error about a mistyped name suggests what was probably meant."""
         try:
             return super().resolve_command(ctx, args)
         except click.UsageError as problem:

@@ -85,7 +85,7 @@ class Kept:
 
     @property
     def paths(self) -> list[Path | None]:
-        """All of them."""
+        """All paths, None for what is not written."""
         return [self.output, self.certificate, self.goal_certificate, self.picture]
 
 

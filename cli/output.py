@@ -60,7 +60,7 @@ class Console:
     has_document: bool = False
 
     def result(self, text: str) -> None:
-        """Print a result."""
+        """Print a result on standard output."""
         _write(_harmless(text), to_error=False)
 
     def answer(self, lines: Iterable[str]) -> None:

@@ -242,7 +242,7 @@ def _lines(
             "" if outcome.since is None else f", within the tolerance since step {outcome.since}"
         )
         if outcome.diverged_at is not None:
-            yield f"gains      {outcome.promise or 'inside the theory: please report'}"
+            yield f"gains      {outcome.promise_gap or 'inside the theory: please report'}"
         for value, labels in outcome.groups if outcome.verdict.value != "agreement" else ():
             yield f"group      {set_text(labels, whole=whole)} at {value:g}"
         if outcome.safe is not None:

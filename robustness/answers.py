@@ -72,7 +72,7 @@ class Answer:
 
     @classmethod
     def violated_by(cls, pair: Pair, stats: Mapping[str, Any] = MappingProxyType({})) -> Answer:
-        """Return NOT_ROBUST."""
+        """Return the answer NOT_ROBUST, with the pair that shows it."""
         return cls(ViolatingPair(pair), stats)
 
     @classmethod
@@ -113,8 +113,9 @@ Rung = Callable[[Question, Limits], Answer | None]
 
 
 def answers_in_turn(rungs: Iterable[Rung], question: Question, limits: Limits) -> Iterator[Answer]:
-    """Yield the answers of a ladder from its lowest rung up, each re-checked. The first one settles the question;
-    whoever needs evidence of a certain kind takes the first that has it.
+    """Yield the answers of a ladder from its lowest rung up, each re-checked.
+
+    The first one settles the question; whoever needs evidence of a certain kind takes the first that has it.
     """
     for rung in rungs:
         answer = rung(question, limits)

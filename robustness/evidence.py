@@ -81,9 +81,7 @@ class Growth:
 
 @dataclass(frozen=True, slots=True)
 class Spectral:
-    """lambda_2 of the links that run both ways exceeds the integer ``mu = 2 (r - 1)``, which proves r-robustness:
-    :mod:`robustness.decision.bounds.spectral`.
-    """
+    """The spectral theorem of :mod:`robustness.decision.bounds.spectral`, with lambda_2 above ``mu = 2 (r - 1)``."""
 
     r: int
     mu: int

@@ -63,7 +63,7 @@ class Piece:
     size: int
 
     def __iter__(self) -> Iterator[bytes]:
-        """Yield them in blocks."""
+        """Yield the bytes, unpacked, in blocks."""
         unpacker = zlib.decompressobj()
         for place in range(self.place, self.place + self.packed, _BLOCK):
             data = self.spool.read(place, min(_BLOCK, self.place + self.packed - place))
@@ -106,6 +106,12 @@ class Transcript:
 
     def __bytes__(self) -> bytes:
         return b"".join(self)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Transcript) and len(self) == len(other) and bytes(self) == bytes(other)
+
+    def __hash__(self) -> int:
+        return hash(bytes(self))
 
 
 @dataclass(frozen=True, slots=True)

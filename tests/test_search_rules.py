@@ -11,6 +11,7 @@ import numpy.typing as npt
 import pytest
 
 import robustness as rb
+from robustness.decision.algorithms.registry import OPTIONS
 from robustness.definitions import is_violation, r_reachable_ids
 from robustness.kernels.layout import MEMBER, SATISFIED, C, F, P, T
 from robustness.kernels.search_rules import Rules, assume
@@ -55,9 +56,10 @@ def whole_state(n: int) -> npt.NDArray[np.uint64]:
     return state
 
 
+@pytest.mark.parametrize("sharing", [False, True])
 @pytest.mark.parametrize("blockers", [0, 1, 2])
 @pytest.mark.parametrize("s", [1, 2, 3])
-def test_propagation_keeps_every_violating_pair(blockers: int, s: int) -> None:
+def test_propagation_keeps_every_violating_pair(blockers: int, s: int, sharing: bool) -> None:
     draw = random.Random(f"{blockers} {s}")
     stood_for = closed = 0
     for _ in range(40):
@@ -86,7 +88,7 @@ def test_propagation_keeps_every_violating_pair(blockers: int, s: int) -> None:
             for kind, side, node, true in literals:
                 assume(state, kind, side, node, true)
             expected = [pair for pair in every if all(obeys(pair, each) for each in literals)]
-            alive = Rules(graph.in_words, need, s - 1, blockers).propagate(state) >= 0
+            alive = Rules(graph.in_words, need, s - 1, blockers, sharing).propagate(state) >= 0
             assert alive or not expected, (graph.in_masks, r, s, literals, expected[:1])
             closed += not alive
             for pair in expected if alive else ():
@@ -98,7 +100,8 @@ def test_propagation_keeps_every_violating_pair(blockers: int, s: int) -> None:
 
 @pytest.mark.parametrize("blockers", [0, 1, 2])
 @pytest.mark.parametrize("look_ahead", [False, True])
-def test_no_switch_changes_an_answer(blockers: int, look_ahead: bool) -> None:
+@pytest.mark.parametrize("sharing", [False, True])
+def test_no_switch_changes_an_answer(blockers: int, look_ahead: bool, sharing: bool) -> None:
     draw = random.Random(7)
     for _ in range(25):
         graph = rb.Digraph.from_networkx(
@@ -106,9 +109,8 @@ def test_no_switch_changes_an_answer(blockers: int, look_ahead: bool) -> None:
         )
         for r, s_max in brute_profile(graph).items():
             for s in {max(s_max, 1), min(s_max + 1, graph.n)}:
-                found = rb.check_rs_robustness(
-                    graph, r, s, algorithm="subset-search", blockers=blockers, look_ahead=look_ahead
-                )
+                switches = {"blockers": blockers, "look_ahead": look_ahead, "sharing": sharing}
+                found = rb.check_rs_robustness(graph, r, s, algorithm="subset-search", **switches)
                 assert found.verdict is (rb.Verdict.ROBUST if s <= s_max else rb.Verdict.NOT_ROBUST)
 
 
@@ -121,6 +123,22 @@ def test_counting_and_looking_ahead_save_what_they_are_for() -> None:
     ]
     assert nodes[1] < nodes[0]
     assert nodes[1] < nodes[2]
+
+
+def test_sharing_saves_what_it_is_for() -> None:
+    graph = rb.Digraph.from_networkx(nx.gnp_random_graph(18, 0.6, seed=3))
+    nodes = [
+        rb.check_rs_robustness(graph, 4, 3, algorithm="subset-search", blockers=1, sharing=sharing).stats["nodes"]
+        for sharing in (True, False)
+    ]
+    assert nodes[0] < nodes[1]
+
+
+def test_each_rule_of_the_search_has_a_switch() -> None:
+    """Those in docs/certificate-format.md which are more than what a state means, and look-ahead."""
+    assert OPTIONS["subset-search"] - {"transcript"} == {"blockers", "sharing", "look_ahead"}
+    with pytest.raises(rb.InvalidParameter, match="transcript is recorded with the rule share on"):
+        rb.check_rs_robustness(nx.petersen_graph(), 2, algorithm="subset-search", transcript=True, sharing=False)
 
 
 def test_blockers_are_none_one_or_two() -> None:

@@ -250,10 +250,9 @@ def join_clique(base: Start, size: int) -> Guaranteed:
     Notes
     -----
     Proof. Suppose S1 and S2 are both not R-reachable. A new node in a set S hears N - |S| <= R - 1 <= ceil(N/2) - 1
-    outside, so
-    |S| > N/2: not both sets have one. If neither has, r-robustness before gives a node with r + m outside. So let
-    S1 have one and S2 none: |S2| <= N - |S1| <= R - 1, and a node of S2 hears all m new nodes and at least d - (|S2|
-    - 1) others outside, so at least max(m, m + d - R + 2) >= R.
+    outside, so |S| > N/2: not both sets have one. If neither has, r-robustness before gives a node with r + m outside.
+    So let S1 have one and S2 none: |S2| <= N - |S1| <= R - 1, and a node of S2 hears all m new nodes and at least
+    d - (|S2| - 1) others outside, so at least max(m, m + d - R + 2) >= R.
     """
     start = _start(base)
     graph = as_digraph(start.graph)

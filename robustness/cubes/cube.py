@@ -117,7 +117,7 @@ class CubeQuestion:
         ``s - 1``.
     transcript : bool
         Whether refutations are recorded.
-    blockers, look_ahead
+    blockers, look_ahead, sharing
         Switches of the search.
     """
 
@@ -127,6 +127,7 @@ class CubeQuestion:
     transcript: bool
     blockers: int
     look_ahead: bool
+    sharing: bool = True
 
     def as_task(self, cube: Cube, seconds: float) -> dict[str, Any]:
         """Return a cube, its question and its slice of time as plain values, for a worker."""
@@ -142,6 +143,7 @@ class CubeQuestion:
             "transcript": self.transcript,
             "blockers": self.blockers,
             "look_ahead": self.look_ahead,
+            "sharing": self.sharing,
             "seconds": seconds,
         }
 
@@ -150,4 +152,5 @@ class CubeQuestion:
         """Return the question of a task."""
         need = np.frombuffer(task["need"], "<i8").astype(np.int64)
         hears = np.frombuffer(task["hears"], "<u8").astype(np.uint64).reshape(len(need), -1)
-        return cls(hears, need, task["spare"], task["transcript"], task["blockers"], task["look_ahead"])
+        switches = task["blockers"], task["look_ahead"], task["sharing"]
+        return cls(hears, need, task["spare"], task["transcript"], *switches)

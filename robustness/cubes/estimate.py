@@ -121,7 +121,13 @@ class Walker:
     def __init__(self, question: CubeQuestion, seed: int) -> None:
         words = question.hears.shape[1]
         plain = CubeQuestion(
-            question.hears, question.need, question.spare, False, question.blockers, question.look_ahead
+            question.hears,
+            question.need,
+            question.spare,
+            False,
+            question.blockers,
+            question.look_ahead,
+            question.sharing,
         )
         self._search, _ = kernel_search(plain, Cube(np.zeros((1, 8, words), np.uint64), (False,)))
         self._stack, self._table = np.asarray(self._search.stack), np.asarray(self._search.table)

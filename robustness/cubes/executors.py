@@ -132,7 +132,7 @@ class _Futures:
             return problem
 
     def refuse(self, result: dict[str, Any]) -> bool:
-        """All workers of a pool are alike."""
+        """Return False: all workers of a pool have the same version."""
         return False
 
     def stop(self) -> None:

@@ -93,7 +93,7 @@ def kernel_search(question: CubeQuestion, cube: Cube) -> tuple[Any, Any]:
     from robustness.kernels.search_rules import Rules
 
     n, words = question.hears.shape
-    rules = Rules(question.hears, question.need, question.spare, question.blockers)
+    rules = Rules(question.hears, question.need, question.spare, question.blockers, question.sharing)
     if question.transcript:
         rules.buffer, rules.place = np.empty(32 * n * n + 4096 + 2**16, np.uint8), 0
     search = Search(rules, question.look_ahead)

@@ -41,7 +41,7 @@ __all__ = ["search_by_cubes"]
 
 #: Seconds of the first slice of a cube, and of the longest. Each has twice as long as the one before.
 _FIRST_SLICE, _LONGEST_SLICE = 0.1, 5.0
-#: Cubes a worker that are open at the least, so that none runs dry; and given out ahead.
+#: For each worker: cubes that are kept open at least, so that it does not run dry, and cubes given out ahead of time.
 _OPEN_EACH, _AHEAD = 8, 2
 #: How often a cube is given out again when it was lost.
 _TRIES = 5
@@ -78,12 +78,12 @@ class _Piece:
 
 
 def search_by_cubes(
-    graph: Digraph, r: int, s: int, limits: Limits, *, transcript: bool, blockers: int, look_ahead: bool
+    graph: Digraph, r: int, s: int, limits: Limits, *, transcript: bool, blockers: int, look_ahead: bool, sharing: bool
 ) -> Answer:
     """Decide (r,s)-robustness with the executor and the journal of ``limits``; switches as for ``subset-search``."""
     need = np.maximum(graph.in_degrees - r + 1, 0).astype(np.int64)
-    question = CubeQuestion(graph.in_words, need, s - 1, transcript, blockers, look_ahead)
-    asked = json.dumps([graph.sha256, r, s, transcript, blockers, look_ahead, software()])
+    question = CubeQuestion(graph.in_words, need, s - 1, transcript, blockers, look_ahead, sharing)
+    asked = json.dumps([graph.sha256, r, s, transcript, blockers, look_ahead, sharing, software()])
     key = hashlib.sha256(asked.encode()).hexdigest()[:32]
     with ExitStack() as stack:
         executor = limits.executor

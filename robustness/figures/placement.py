@@ -85,7 +85,7 @@ def positions_for(
 
 
 def _sides(graph: Digraph, marks: Marks) -> Positions:
-    """S1 on the left, S2 on the right, who is malicious outside both above, all others below."""
+    """Return places: S1 left, S2 right, above them the malicious nodes outside both, below them all others."""
     others = frozenset(range(graph.n)) - marks.S1 - marks.S2 - marks.M
     apart = marks.M - marks.S1 - marks.S2
     places: Positions = {}
@@ -116,7 +116,7 @@ def _circle(nodes: list[int], centre: tuple[float, float], radius: float) -> Pos
 
 
 def _spread(graph: Digraph) -> Positions:
-    """A circle for dense and for small graphs, otherwise springs from a fixed start."""
+    """Return places: on a circle for dense and for small graphs, otherwise by springs from a fixed start."""
     shape = nx.Graph()
     shape.add_nodes_from(range(graph.n))
     shape.add_edges_from(graph.arcs())

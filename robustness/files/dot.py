@@ -71,7 +71,7 @@ def decode(data: bytes, options: ReadingOptions) -> Digraph:
 
 @contextlib.contextmanager
 def _quietly(complaint: io.StringIO) -> Iterator[None]:
-    """Keep to ourselves what pydot prints about a bad file, and what its parser says of its own future."""
+    """Put into ``complaint`` what pydot prints about a bad file, and silence the warnings of its parser."""
     with warnings.catch_warnings(), contextlib.redirect_stdout(complaint), contextlib.redirect_stderr(complaint):
         warnings.simplefilter("ignore")
         yield

@@ -109,9 +109,7 @@ class Node:
 
 @dataclass(slots=True)
 class Link:
-    """A link of a file: its two ends by id, whether it says of itself that it runs one way (None: nothing), and what
-    else the file says of it.
-    """
+    """A link of a file: its ends by id, whether it says that it runs one way (None: nothing), and what else is said."""
 
     source: Hashable
     target: Hashable

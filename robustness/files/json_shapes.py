@@ -291,7 +291,7 @@ def _ends_by_name(row: Mapping[str, Any], i: int) -> tuple[Hashable, Hashable]:
 
 
 def _said(document: Mapping[str, Any]) -> bool | None:
-    """Return what a document says about direction in the one word that all understand."""
+    """Return the flag ``directed``, the one key about direction that all shapes share; None without it."""
     return flag(document, "directed", default=None)  # type: ignore[no-any-return]  # a truth value or None
 
 

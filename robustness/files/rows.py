@@ -109,7 +109,7 @@ def content_of(data: bytes, skip_lines: int | None = None) -> Content:
         if "#" in text and '"' not in text:
             text = re.split(r"\s#", text)[0].rstrip(" ")
         if not lines and re.fullmatch(r"sep=.", text):
-            continue  # a spreadsheet's word about its separator, which shows itself
+            continue  # a spreadsheet names its separator, which is found anyway
         if text.strip():
             lines.append((number, text))
     if len(said) == 2:

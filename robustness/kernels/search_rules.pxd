@@ -10,6 +10,7 @@ cpdef void assume(word[:, ::1] state, number kind, number side, number node, bin
 @cython.final
 cdef class Rules:
     cdef public number n, words, spare, blockers, place
+    cdef public bint sharing
     cdef public word[:, ::1] hears, reach
     cdef public number[::1] need, slack, blocker, allowed
     cdef public number[:, ::1] margin

@@ -73,6 +73,8 @@ class Rules:
         ``s - 1``, how many nodes may be exempt.
     blockers : 0, 1 or 2
         How many satisfied nodes *count* may combine; 0 switches it off.
+    sharing : bool
+        Whether the rule *share* is on.
 
     Attributes
     ----------
@@ -94,9 +96,9 @@ class Rules:
         Scratch.
     """
 
-    def __init__(self, hears, need, spare, blockers):
+    def __init__(self, hears, need, spare, blockers, sharing):
         n, words = hears.shape
-        self.hears, self.need, self.spare, self.blockers = hears, need, spare, blockers
+        self.hears, self.need, self.spare, self.blockers, self.sharing = hears, need, spare, blockers, sharing
         self.n, self.words = n, words
         self.margin = np.zeros((2, n), np.int64)
         self.reach = np.empty((n, words), np.uint64)
@@ -204,7 +206,7 @@ class Rules:
                     return -1
             if changed:
                 continue
-            if left:
+            if left and self.sharing:
                 for side in range(2):
                     fair = left - self._least_spare(state, left, 1 - side)
                     if fair < 0:

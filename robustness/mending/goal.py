@@ -23,9 +23,9 @@ class Goal:
     r, s : int or None, int
         (r,s)-robust.
     survive : int or None
-        Agreement is guaranteed against so many malicious nodes ...
+        Agreement is guaranteed against so many malicious nodes under ``model``.
     model : str
-        ... under this threat model, a name in ``THREAT_MODELS``.
+        A threat model, a name in ``THREAT_MODELS``.
 
     Raises
     ------

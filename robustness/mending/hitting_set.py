@@ -58,7 +58,7 @@ _FIRST_EFFORT, _EFFORT, _GROWTH, _GROWTH_ON_FEW = 1.0, 4.0, 1.3, 1.5
 #: A proposal is repaired in so many ways, divided by the square of the number of nodes, and in one at least.
 _REPAIRED = 2000
 
-#: Each so manieth proposal is a cheapest one, which takes longest.
+#: Of so many proposals one is a cheapest choice, which takes longest to find.
 _SELDOM = 3
 
 #: At most so many links of the best choice are taken away at once, to be replaced by others.

@@ -61,9 +61,9 @@ class Problem:
     least : int or None
         The lower bound in units of the actions' scale; None when no choice reaches the goal.
     pairs : tuple of (Part, Sets)
-        Violations of ``graph`` from which the bound follows,
+        Violations of ``graph``; the bound follows from them and from the covers.
     covers : tuple of (Part, masks of nodes)
-        and covers of its links (:mod:`robustness.mending.covers`).
+        Covers of its links (:mod:`robustness.mending.covers`).
     """
 
     graph: Digraph

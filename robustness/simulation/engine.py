@@ -99,7 +99,7 @@ class Batch:
         self.jobs = max(1, min(jobs, runs)) if busy else 1
         self._move = Move()
 
-    def promises(self) -> tuple[str | None, ...]:
+    def promise_gaps(self) -> tuple[str | None, ...]:
         """Return, for every run, why the theory promises nothing about it, or None."""
         return tuple(self.fleet.gap(np.flatnonzero(~row).tolist()) for row in self.setting.malicious)
 

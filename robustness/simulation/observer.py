@@ -43,12 +43,12 @@ class Observer:
         fleet: Fleet,
         scenario: Scenario,
         starts: Sequence[Start],
-        promises: Sequence[str | None],
+        gaps: Sequence[str | None],
         *,
         record: bool,
     ) -> None:
         states, runs, n = scenario.steps + 1, len(starts), setting.graph.n
-        self.setting, self.scenario, self.starts, self.promises = setting, scenario, starts, promises
+        self.setting, self.scenario, self.starts, self.gaps = setting, scenario, starts, gaps
         self.low, self.high = np.zeros((states, runs)), np.zeros((states, runs))
         self.speed = np.zeros((states, runs))
         self.normal = ~setting.malicious
@@ -126,7 +126,7 @@ class Observer:
             rate=None if stopped else convergence_rate(spread),
             contraction=self.contraction[b],
             safe=self._safe(b, stopped=stopped),
-            promise=self.promises[b],
+            promise_gap=self.gaps[b],
             groups=groups_of(self.final[b], self.normal[b], setting.graph.labels, limit),
             trajectory=states,
             scenario=scenario,
@@ -135,7 +135,7 @@ class Observer:
 
     def _safe(self, b: int, *, stopped: bool) -> bool | None:
         """Return whether the hull of the start was kept, or None where the theory promises none."""
-        if self.promises[b] is not None:
+        if self.gaps[b] is not None:
             return None
         normal = self.normal[b]
         if stopped or not normal.any():

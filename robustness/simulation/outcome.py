@@ -83,7 +83,7 @@ class Outcome(ShownOverTime):
     safe : bool or None
         Whether no normal vehicle ever left the hull that the theory promises; None when it promises none. The hull is
         that of all ``p`` and ``p + c q`` at the start, :func:`robustness.gain_region.hull_velocity_factor`.
-    promise : str or None
+    promise_gap : str or None
         Why the theory promises nothing about this run, or None when its gains lie inside the theory.
     groups : tuple
         Normal vehicles in groups of equal ``p - d`` (to the tolerance) at the horizon, from the lowest to the highest:
@@ -104,7 +104,7 @@ class Outcome(ShownOverTime):
     rate: float | None
     contraction: Contraction | None
     safe: bool | None
-    promise: str | None
+    promise_gap: str | None
     groups: tuple[tuple[float, tuple[Label, ...]], ...]
     trajectory: Trajectory | None = field(default=None, compare=False)
     scenario: Scenario | None = field(default=None, compare=False)
@@ -188,7 +188,7 @@ class Outcome(ShownOverTime):
             "rate": self.rate,
             "contraction": None if self.contraction is None else self.contraction._asdict(),
             "safe": self.safe,
-            "promise": self.promise,
+            "promise_gap": self.promise_gap,
             "groups": [{"value": value, "nodes": in_natural_order(labels)} for value, labels in self.groups],
         }
 

@@ -116,7 +116,7 @@ class PlainRecord:
             spread, speed, limit, scenario.dwell_steps, watched=scenario.groups is not None,
             unchanged=self._unchanged(b), diverged=stopped is not None,
         )  # fmt: skip
-        promise = next((gap for gap in map(self._gap, normal) if gap is not None), None)
+        nothing_promised = next((gap for gap in map(self._gap, normal) if gap is not None), None)
         fleet = fleet_of(self.union, self.rule, scenario.f, scenario.T, scenario.alpha, scenario.weights)
         final = np.array(self.seen[b][-1][0])
         is_normal = np.array([i in normal for i in range(self.union.n)], dtype=bool)
@@ -126,8 +126,8 @@ class PlainRecord:
             None if stopped is not None else convergence_rate(spread),
             proven_contraction(self.union, fleet, scenario.f, len(normal), scenario.schedule)
             if scenario.network.fixed else None,
-            None if promise is not None else stopped is None and self._safe(b, places),
-            promise, groups_of(final, is_normal, self.union.labels, limit),
+            None if nothing_promised is not None else stopped is None and self._safe(b, places),
+            nothing_promised, groups_of(final, is_normal, self.union.labels, limit),
             self._trajectory(b) if keep else None,
         )  # fmt: skip
 

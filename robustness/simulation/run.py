@@ -86,11 +86,11 @@ def simulate(
         if max(scenario.steps, scenario.schedule.delay_rule.bound) * len(starts) > _NUMBERS:
             raise MemoryError
         batch = Batch(scenario, starts, jobs)
-        promises = batch.promises()
+        gaps = batch.promise_gaps()
         # Evidence that two groups never move holds for all gains: then there is nothing to warn of.
         if scenario.groups is None:
-            _warn_of(batch.fleet, promises, stacklevel=3)
-        observer = Observer(batch.setting, batch.fleet, scenario, starts, promises, record=record)
+            _warn_of(batch.fleet, gaps, stacklevel=3)
+        observer = Observer(batch.setting, batch.fleet, scenario, starts, gaps, record=record)
     except MemoryError:
         raise InvalidParameter(
             f"{scenario.steps} steps of {len(starts)} runs with delays up to {scenario.schedule.delay_rule.bound} do "
@@ -125,8 +125,8 @@ def _several(starts: object) -> list[Start]:
     return found
 
 
-def _warn_of(fleet: Fleet, promises: Sequence[str | None], *, stacklevel: int) -> None:
+def _warn_of(fleet: Fleet, gaps: Sequence[str | None], *, stacklevel: int) -> None:
     """Warn once where the gains of some run lie outside the theory; about a rule of one's own there is none."""
-    said = next((promise for promise in promises if promise is not None), None)
+    said = next((gap for gap in gaps if gap is not None), None)
     if said is not None and fleet.rule.update is None:
         warnings.warn(said, PromiseWarning, stacklevel=stacklevel)

@@ -69,11 +69,11 @@ class Scenario:
     groups : two tuples of labels, or None
         Two groups that evidence says are never to move: every normal node of them is watched bit for bit.
     tolerance : float
-        Agreement means a spread of at most this multiple of the normal vehicles' initial spread (of 1 if that is 0),
-        and speeds relative to the target of at most as much per unit of time ...
+        Agreement means, at each of the last ``dwell`` states, a spread of at most this multiple of the normal vehicles'
+        initial spread (of 1 if that is 0), and speeds relative to the target of at most as much per unit of time.
     dwell : int or None
-        ... at each of the last ``dwell`` states; None: 10, or twice tau + 1, or for a network that changes twice its
-        turn (half the run when that is less), whichever is most. A shorter run decides nothing.
+        How many of the last states must show agreement or a split; None: 10, or twice tau + 1, or for a network that
+        changes twice its turn (half the run when that is less), whichever is most. A shorter run decides nothing.
     growth : float
         A run *diverges* when a normal vehicle gets farther away than this many times the extent of the start, see
         :class:`robustness.simulation.divergence.Divergence`.

@@ -18,13 +18,12 @@ __all__ = ["confirm"]
 
 
 def confirm(result: ToleranceResult, steps: int = 12) -> bool | None:
-    """Play the attack on ``result.refuted`` by the plain loop; does it split exactly? None without an attack, and
-    over time where updates lie so far apart that the simulator, which uses no value older than tau even between
-    updates, cannot play it.
+    """Return whether the attack on ``result.refuted``, played by the plain loop, splits the network exactly.
 
-    *Exactly*: no vehicle of the two groups moves by one bit or gains any speed, at any step. An attack repeats after
-    two steps (two periods, over time), so a few are as good as many: :mod:`robustness.simulation.attacks` has the
-    induction.
+    None without an attack, and over time where updates lie so far apart that the simulator, which uses no value older
+    than tau even between updates, cannot play it. *Exactly*: no vehicle of the two groups moves by one bit or gains any
+    speed, at any step. An attack repeats after two steps (two periods, over time), so a few are as good as many:
+    :mod:`robustness.simulation.attacks` has the induction.
 
     >>> import networkx as nx
     >>> from robustness.threat_models import tolerance

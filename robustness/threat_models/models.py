@@ -39,7 +39,7 @@ class ThreatModel:
     setting : str
         Who misbehaves and how messages travel, in plain words.
     where : str
-        The same as a part of a sentence: agreement is guaranteed ... where?
+        The same, as it stands at the beginning of a sentence about what is guaranteed.
     condition : str
         What agreement against f is equivalent to.
     theorem, counter_theorem : str

@@ -1,4 +1,4 @@
-"""What a question about tolerance is answered with: frozen, and never more than is proven, in words neither."""
+"""What a question about tolerance is answered with, as values and in words: frozen, and never more than is proven."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class AttackSets:
 
     @property
     def kind(self) -> str:
-        """``"violation"`` or ``"trap"``."""
+        """What the sets are, by their faces: ``"violation"`` or ``"trap"``."""
         return "violation" if self.faces == 1 else "trap"
 
 

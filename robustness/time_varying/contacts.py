@@ -1,7 +1,7 @@
 """Contact traces: who met whom when, put into bins of equal length; each bin is a step.
 
-Rows of a table in any dress of :mod:`robustness.files.rows`: a time and two nodes, in columns that a first line or a
-comment above it names, or that ``columns`` says, or in the order time, source, target where nothing else can be
+Rows of a table in any form that :mod:`robustness.files.rows` knows: a time and two nodes, in columns that a first line
+or a comment above it names, or that ``columns`` says, or in the order time, source, target where nothing else can be
 meant. Instead of a time there may be a ``start`` and an ``end``: the contact is there from the one until before the
 other. The connection log of the ONE simulator (``TIME CONN a b up``) is read as well.
 

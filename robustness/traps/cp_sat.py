@@ -9,9 +9,8 @@ For every node i and side k: ``a_ik``, i is a normal node of side k; ``m_ik``, i
     sum of m_i <= f            (total),  or for every i that is not malicious
     sum over j in N_i of m_j <= f + (d_i - f) m_i                          (local)
 
-with ``m_i = m_i1 + m_i2``, or their common value. These are the definitions of
-:mod:`robustness.traps.question` row
-by row, and all data are small integers. What is trusted is CP-SAT's word that the programme is infeasible; a solution
+with ``m_i = m_i1 + m_i2``, or their common value. These are the definitions of :mod:`robustness.traps.question` row by
+row, and all data are small integers. What is trusted is CP-SAT's word that the programme is infeasible; a solution
 is re-checked.
 """
 
@@ -28,9 +27,7 @@ __all__ = ["decide"]
 
 
 def decide(graph: Digraph, question: Question, limits: Limits) -> TrapAnswer:
-    """Return whether a solution exists (None past the deadline or when the solver gave up), one, and the solver's
-    status.
-    """
+    """Return whether a solution exists, one, and the solver's status; None past the deadline or when it gave up."""
     from ortools.sat.python import cp_model
 
     if limits.expired():

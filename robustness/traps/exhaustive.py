@@ -25,5 +25,5 @@ def decide(graph: Digraph, question: Question, limits: Limits) -> TrapAnswer:
 def _role_assignments(n: int, two_faces: bool) -> Iterator[Sets]:
     """Yield every way to give each node a role: nowhere, S1, S2, or malicious (with one face: inside S1 or S2)."""
     for roles in product("-12M" if two_faces else "-12ab", repeat=n):
-        held = {role: frozenset(i for i in range(n) if roles[i] == role) for role in "12Mab"}
-        yield Sets(held["M"] | held["a"] | held["b"], held["1"] | held["a"], held["2"] | held["b"])
+        those = {role: frozenset(i for i in range(n) if roles[i] == role) for role in "12Mab"}
+        yield Sets(those["M"] | those["a"] | those["b"], those["1"] | those["a"], those["2"] | those["b"])

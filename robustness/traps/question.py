@@ -45,9 +45,7 @@ class Question(NamedTuple):
 
 
 class Sets(NamedTuple):
-    """M, S1 and S2 as id sets. With one face the malicious nodes are members of S1 and S2, with two they are in
-    neither.
-    """
+    """M, S1 and S2 as id sets. With one face malicious nodes are members of S1 or S2, with two of neither."""
 
     M: frozenset[int]
     S1: frozenset[int]

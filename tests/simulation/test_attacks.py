@@ -158,7 +158,7 @@ class TestTheSplitDependsOnNothingElse:
         for attack in self.attacks():
             outcome = attack.run(20, T=0.01, alpha=1.0)
             assert outcome.exact
-            assert "nothing is promised" in str(outcome.promise)
+            assert "nothing is promised" in str(outcome.promise_gap)
 
 
 class TestPropositionOne:

@@ -42,7 +42,7 @@ def test_every_adversary_and_unstable_gains(adversary: str, gains: dict[str, Any
     found = outcome(adversary=adversary, **gains)
     assert found.verdict is RunVerdict.DIVERGENCE
     assert 0 < found.diverged_at <= 300
-    assert "nothing is promised" in found.promise
+    assert "nothing is promised" in found.promise_gap
     assert not found.exact
     assert (found.since, found.rate, found.safe) == (None, None, None)
     text = json.dumps(found.as_dict(), allow_nan=False)
@@ -59,7 +59,7 @@ def test_a_malicious_vehicle_alone_does_not_make_a_run_diverge() -> None:
     gains = {0: 1.5, 1: 1.5, 2: 1.5, 3: 1.5, 4: 1e200}
     found = outcome(adversary=ADVERSARIES["omission"](), alpha=gains, steps=600)
     assert found.verdict is RunVerdict.AGREEMENT
-    assert found.promise is None
+    assert found.promise_gap is None
     assert found.safe
 
 
@@ -83,7 +83,7 @@ def test_a_run_in_a_batch_diverges_alone() -> None:
     first, second = simulate(scenario, starts)
     assert (first.verdict, second.verdict) == (RunVerdict.DIVERGENCE, RunVerdict.AGREEMENT)
     assert [simulate(scenario, start)[0] for start in starts] == [first, second]
-    assert second.promise is None
+    assert second.promise_gap is None
 
 
 def test_large_starts_are_refused_and_those_within_the_limit_do_not_overflow() -> None:
@@ -174,7 +174,7 @@ class TestCommand:
         read = json.loads(document)
         assert read["outcome"] == "divergence"
         assert read["runs"][0]["diverged_at"] > 0
-        assert "alpha T = 4" in read["runs"][0]["promise"]
+        assert "alpha T = 4" in read["runs"][0]["promise_gap"]
 
     def test_is_an_outcome(self, tmp_path: Path) -> None:
         assert self.run(tmp_path, "--alpha", "4", "--adversary", "sine")[0] == 0

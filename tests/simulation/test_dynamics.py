@@ -123,7 +123,7 @@ class TestGains:
         with pytest.warns(PromiseWarning, match="nothing is promised"):
             (outcome,) = simulate(scenario, [Start(frozenset(), (0.0, 1.0, 2.0, 3.0), (0.0,) * 4)])
         assert outcome.safe is None
-        assert outcome.promise is not None
+        assert outcome.promise_gap is not None
 
     @pytest.mark.parametrize("alpha", [0.0, -1.0, float("nan"), {0: 1.0}])
     def test_bad_gains_are_refused(self, alpha: object) -> None:

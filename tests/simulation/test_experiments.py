@@ -77,7 +77,7 @@ class TestThePapersSettings:
             case = EXPERIMENTS[setting].cases()[0]
             outcome = simulate(Scenario(**_without_steps(case.scenario), steps=20), [case.start])[0]
             assert outcome.safe is None
-            assert "alpha T" in str(outcome.promise)
+            assert "alpha T" in str(outcome.promise_gap)
 
     @pytest.mark.slow
     @pytest.mark.parametrize("setting", ["setting-1", "setting-2"])
@@ -99,7 +99,7 @@ def test_every_other_experiment_ends_as_the_theorems_say(name: str) -> None:
     assert results
     for result in results:
         assert result.as_reported, (result.case.name, result.outcome)
-        inside = result.outcome.promise is None
+        inside = result.outcome.promise_gap is None
         assert result.outcome.safe is (True if inside else None)
         if name in ("gains-outside", "swap", "push"):
             assert (result.outcome.verdict.value == "agreement") == inside

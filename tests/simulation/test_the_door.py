@@ -165,7 +165,7 @@ class TestRulesOfOnesOwn:
                 (one,), (other,) = simulate(made, start, record=True), simulate_plainly(made, [start], record=True)
                 assert one == other
                 assert np.array_equal(one.trajectory.p, other.trajectory.p)
-                assert "no theorem" in one.promise
+                assert "no theorem" in one.promise_gap
 
     def test_the_mean_of_all_is_dragged_away_and_the_trimmed_mean_is_not(self) -> None:
         def mean(own: float, heard: tuple[float, ...]) -> float:

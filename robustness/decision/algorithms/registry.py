@@ -41,10 +41,10 @@ def _lazily(module: str) -> Algorithm:
 #: The switches of each algorithm, by its name; ``auto`` takes those of the search that it ends in.
 OPTIONS: Mapping[str, frozenset[str]] = MappingProxyType(
     {
-        "auto": frozenset({"transcript", "blockers", "look_ahead"}),
+        "auto": frozenset({"transcript", "blockers", "look_ahead", "sharing"}),
         "exhaustive": frozenset(),
         "transform": frozenset(),
-        "subset-search": frozenset({"transcript", "blockers", "look_ahead"}),
+        "subset-search": frozenset({"transcript", "blockers", "look_ahead", "sharing"}),
         "milp": frozenset({"solver", "pair_counting"}),
         "cp-sat": frozenset({"pair_counting"}),
     }

@@ -2,12 +2,13 @@
 
 Non-r-reachable sets are closed under union, so inside any candidate set there is one largest, found by peeling; the
 search keeps such candidate sets for both sides of a violating pair and shrinks them by the rules of
-:mod:`robustness.kernels.search_rules` (peel, force, disjoint, count, look-ahead). The swap symmetry of
+:mod:`robustness.kernels.search_rules` (disjoint, peel, force, share, count) and look-ahead. The swap symmetry of
 pairs is broken by roots: refute every pair that has v as a satisfied node of S1; then v is satisfied in neither set. A
 percolating seed of roots empties the candidates, and the refutation is complete.
 
 Every step is recorded on demand in the transcript that ``certificates`` replays, and every rule has a switch:
-``blockers=0`` turns counting off, ``blockers=1`` leaves pair counting only, ``look_ahead=False`` branches blindly.
+``blockers=0`` turns counting off, ``blockers=1`` leaves pair counting only, ``sharing=False``
+turns off *share*, ``look_ahead=False`` branches blindly. (*disjoint*, *peel* and *force* are what a state means.)
 
 Threads share the work by cubes: a thread that runs dry takes the shallowest pending subproblem of a busy one. The
 verdict does not depend on who solves what; which violating pair is found first may.
@@ -78,6 +79,7 @@ def decide(
     transcript: bool = False,
     blockers: int = 2,
     look_ahead: bool = True,
+    sharing: bool = True,
 ) -> Answer:
     """Decide (r,s)-robustness by pruned search; exponential in the worst case, honours every limit.
 
@@ -89,23 +91,37 @@ def decide(
         How many satisfied nodes the counting rule may combine; 0 switches it off.
     look_ahead : bool
         Whether branching first tries a few nodes as satisfied ones: those that cannot be are settled at once.
+    sharing : bool
+        Whether exempt nodes that one side cannot do without are not left for the other; a transcript needs it, since
+        whoever verifies it applies that rule by itself.
     """
     if blockers not in (0, 1, 2):
         raise InvalidParameter(f"blockers is 0, 1 or 2, not {blockers!r}")
+    if transcript and not sharing:
+        raise InvalidParameter("a transcript is recorded with the rule share on: leave sharing out")
     if graph.n > MOST_NODES:
         return Answer.undecided(f"subset-search takes at most {MOST_NODES} nodes")
     if limits.steps is None and (limits.executor is not None or limits.state is not None):
         from robustness.cubes.spreading import search_by_cubes
 
-        return search_by_cubes(graph, r, s, limits, transcript=transcript, blockers=blockers, look_ahead=look_ahead)
-    return _Search(graph, r, s, limits, transcript, blockers, look_ahead).run()
+        switches: dict[str, Any] = {"blockers": blockers, "look_ahead": look_ahead, "sharing": sharing}
+        return search_by_cubes(graph, r, s, limits, transcript=transcript, **switches)
+    return _Search(graph, r, s, limits, transcript, blockers, look_ahead, sharing).run()
 
 
 class _Search:
     """One question, its queue of cubes, and the threads that empty it."""
 
     def __init__(
-        self, graph: Digraph, r: int, s: int, limits: Limits, transcript: bool, blockers: int, look_ahead: bool
+        self,
+        graph: Digraph,
+        r: int,
+        s: int,
+        limits: Limits,
+        transcript: bool,
+        blockers: int,
+        look_ahead: bool,
+        sharing: bool,
     ) -> None:
         self.hears = graph.in_words
         self.need = np.maximum(graph.in_degrees - r + 1, 0).astype(np.int64)
@@ -115,7 +131,7 @@ class _Search:
         self.transcript = transcript
         self.spool = Spool()
         self.blockers = blockers
-        self.look_ahead = look_ahead
+        self.look_ahead, self.sharing = look_ahead, sharing
         self.root = Cube(whole_state(graph.n), symmetric=True)
         self.lock = threading.Condition()
         self.queue: deque[Cube] = deque([self.root])
@@ -191,7 +207,7 @@ class _Search:
         from robustness.kernels.search_rules import Rules
 
         n = self.hears.shape[0]
-        rules = Rules(self.hears, self.need, self.spare, self.blockers)
+        rules = Rules(self.hears, self.need, self.spare, self.blockers, self.sharing)
         if self.transcript:
             rules.buffer, rules.place = np.empty(32 * n * n + 4096 + 2**16, np.uint8), 0
         search = Search(rules, self.look_ahead)

@@ -1,7 +1,7 @@
 r"""A violating pair as an integer programme: one model in OR-tools' MathOpt, for ``milp`` and ``cp-sat``.
 
 Let ``d_i = |N_i|`` and ``k_i = max(0, d_i - r + 1)``, the in-neighbours that i needs inside its own set if fewer than
-r are to be outside. Every node is in one of five states, by four binary variables: a *held* member of S1 (``a_i``)
+r are to be outside. Every node is in one of five states, by four binary variables: a *satisfied* member of S1 (``a_i``)
 or S2 (``b_i``), which must not be r-reachable; an *exempt* member (``e_i``, ``g_i``), which may be; or in neither::
 
     a_i + e_i + b_i + g_i <= 1                              every i
@@ -13,7 +13,7 @@ The programme is feasible iff the digraph is not (r,s)-robust; the minimum is s_
 Proof. For a violating pair let the exempt members be exactly ``X_S1`` and ``X_S2``. Every other member i has at most
 r - 1 in-neighbours outside its set, so at least ``d_i - r + 1`` inside; since ``X_Sk != Sk`` both sides hold a member;
 and ``|X_S1| + |X_S2| <= s - 1``. Conversely, let S1 be the nodes with ``a_i + e_i = 1`` and S2 those with
-``b_i + g_i = 1``: disjoint and nonempty. A held i has at most ``d_i - k_i <= r - 1`` in-neighbours outside
+``b_i + g_i = 1``: disjoint and nonempty. A satisfied i has at most ``d_i - k_i <= r - 1`` in-neighbours outside
 (``d_i <= r - 1`` when k_i = 0). So ``X_Sk`` holds exempt members only, never all of Sk, and
 ``|X_S1| + |X_S2| <= s - 1``.
 
@@ -29,10 +29,10 @@ For r* itself, with one integer t in place of the exemptions (Usevitch and Panag
 elsewhere. So the least t is the least ``max |N_i \ S_k|`` over all pairs; and G is r-robust iff every pair has a node
 with ``|N_i \ S_k| >= r``. Hence the minimum is r*.
 
-Pair counting (ours; the switch ``pair_counting``). Let i be held in S1 and j in S2. At least k_i nodes of ``N_i - j``
-are in S1, at least k_j nodes of ``N_j - i`` in S2, and these are disjoint. A held one among the former must itself go
-with j, a held one among the latter with i, and at most s - 1 are exempt. Where that does not fit
-(:func:`compatible_pairs`), ``a_i + b_j <= 1``. A node that goes with no other is never held; if no two nodes go
+Pair counting (ours; the switch ``pair_counting``). Let i be satisfied in S1 and j in S2. At least k_i nodes of
+``N_i - j`` are in S1, at least k_j nodes of ``N_j - i`` in S2, and these are disjoint. A satisfied one among the former
+must itself go with j, one among the latter with i, and at most s - 1 are exempt. Where that does not fit
+(:func:`compatible_pairs`), ``a_i + b_j <= 1``. A node that goes with no other is never satisfied; if no two nodes go
 together, the graph is (r,s)-robust without any search.
 
 What is trusted. For a violating pair: nothing; it is rounded and re-checked. For ROBUST: the solver's claim that the
@@ -42,7 +42,7 @@ not to a false ROBUST. CP-SAT reasons in integers; HiGHS and SCIP in floating po
 
 Source: J. Usevitch and D. Panagou, "Determining r- and (r,s)-robustness of digraphs using mixed integer linear
 programming", Automatica 111, 2020 (arXiv 1901.11000). Their (r,s) programme has a row with a large coefficient for
-each node; holding or exempting every member, with tight rows, is our variation. It decides 20-node questions with
+each node; making every member satisfied or exempt, with tight rows, is our variation. It decides 20-node questions with
 s = 9 in about a second, where membership variables with exemptions on top took HiGHS over half a minute.
 """
 
@@ -93,21 +93,21 @@ def pair_model(graph: Digraph, r: int, s: int | None, compatible: Sequence[int])
     s : int or None
         At least 1; None minimises ``|X_S1| + |X_S2|`` over all s.
     compatible : sequence of int
-        ``compatible[i]``: mask of the nodes that may be held in the other set when i is held in one.
+        ``compatible[i]``: mask of the nodes that may be satisfied in the other set when i is satisfied in one.
     """
     from ortools.math_opt.python import mathopt
 
     model = mathopt.Model()
     need = [max(0, degree - r + 1) for degree in graph.in_degrees.tolist()]
-    held = [[model.add_binary_variable() for _ in need] for _ in range(2)]
+    satisfied = [[model.add_binary_variable() for _ in need] for _ in range(2)]
     exempt = [[[model.add_binary_variable()] if k and s != 1 else [] for k in need] for _ in range(2)]
-    inside = [[[h, *x] for h, x in zip(*side, strict=True)] for side in zip(held, exempt, strict=True)]
-    _add_sides(model, inside, held, graph)
+    inside = [[[h, *x] for h, x in zip(*side, strict=True)] for side in zip(satisfied, exempt, strict=True)]
+    _add_sides(model, inside, satisfied, graph)
     for side in range(2):
         for i, k in enumerate(need):
             if k:
                 heard = [state for j in graph.in_neighbours(i).tolist() for state in inside[side][j]]
-                model.add_linear_constraint(mathopt.fast_sum(heard) >= k * held[side][i])
+                model.add_linear_constraint(mathopt.fast_sum(heard) >= k * satisfied[side][i])
     exempted = mathopt.fast_sum([state for side in exempt for states in side for state in states])
     if s is None:
         model.minimize(exempted)
@@ -115,11 +115,11 @@ def pair_model(graph: Digraph, r: int, s: int | None, compatible: Sequence[int])
         model.add_linear_constraint(exempted <= s - 1)
     for i, others in enumerate(compatible):
         if not others:
-            held[0][i].upper_bound = held[1][i].upper_bound = 0
+            satisfied[0][i].upper_bound = satisfied[1][i].upper_bound = 0
             continue
         for j, back in enumerate(compatible):
             if i != j and back and not others >> j & 1:
-                model.add_linear_constraint(held[0][i] + held[1][j] <= 1)
+                model.add_linear_constraint(satisfied[0][i] + satisfied[1][j] <= 1)
     return ViolationModel(model, *inside)
 
 
@@ -143,15 +143,15 @@ def largest_r_model(graph: Digraph) -> ViolationModel:
 def _add_sides(
     model: mathopt.Model,
     inside: Sequence[Sequence[Sequence[mathopt.Variable]]],
-    held: Sequence[Sequence[mathopt.Variable]],
+    satisfied: Sequence[Sequence[mathopt.Variable]],
     graph: Digraph,
 ) -> None:
-    """Every node in at most one set, both sets with a held member, one node kept out of S2."""
+    """Add the rows: every node in at most one set, both sets with a satisfied member, one node kept out of S2."""
     from ortools.math_opt.python import mathopt
 
     for one, two in zip(*inside, strict=True):
         model.add_linear_constraint(mathopt.fast_sum([*one, *two]) <= 1)
-    for side in held:
+    for side in satisfied:
         model.add_linear_constraint(mathopt.fast_sum(side) >= 1)
     for state in inside[1][int(graph.in_degrees.argmax())]:
         state.upper_bound = 0
@@ -163,7 +163,7 @@ def all_pairs(n: int) -> list[int]:
 
 
 def compatible_pairs(graph: Digraph, r: int, s: int, limits: Limits) -> list[int]:
-    r"""Return for every node i the mask of the nodes j that may be held in S2 while i is held in S1.
+    r"""Return for every node i the mask of the nodes j that may be satisfied in S2 while i is satisfied in S1.
 
     The relation is symmetric, and it shrinks to a fixpoint: with ``P = (N_i - j) & goes_with[j]`` and
     ``Q = (N_j - i) & goes_with[i]``, the pair i, j goes when, for some way to exempt s - 1 more nodes of ``N_i``
@@ -202,7 +202,7 @@ def compatible_pairs(graph: Digraph, r: int, s: int, limits: Limits) -> list[int
     return goes
 
 
-def _room(held: int, heard: int, s: int) -> int:
-    """Return how many members ``heard`` can give: all of ``held``, and at most s - 1 exempt others."""
-    certain = held.bit_count()
+def _room(satisfied: int, heard: int, s: int) -> int:
+    """Return how many members ``heard`` can give: all of ``satisfied``, and at most s - 1 exempt others."""
+    certain = satisfied.bit_count()
     return certain + min(s - 1, heard.bit_count() - certain)

@@ -41,8 +41,7 @@ def battery(graph: Digraph, f: int, *, steps: int = 600, seeds: int = 1) -> dict
     -------
     dict
         ``"agreement"``, ``"split"``, ``"divergence"`` and ``"undecided"`` to numbers of runs. A run that is undecided
-        is played once
-        more, eight times as long.
+        is played once more, eight times as long.
     """
     starts = [
         random_start(graph, graph.labels_of(bad), seed)
@@ -141,7 +140,7 @@ def _gain_region() -> Outcome:
         warnings.simplefilter("ignore", PromiseWarning)
         results = [*run_experiment(EXPERIMENTS["gains-outside"]), *run_experiment(EXPERIMENTS["swap"])]
     right = all(each.as_reported for each in results)
-    inside = sum(each.outcome.promise is None for each in results)
+    inside = sum(each.outcome.promise_gap is None for each in results)
     how = "simulation: experiments gains-outside and swap, nobody malicious"
     note = f"{len(results) - inside} runs outside diverge or swap for ever, {inside} inside with the same delays agree"
     return Outcome("holds" if right else "fails", how, note)
