@@ -14,21 +14,31 @@ from robustness.errors import UnreadableTopology
 from robustness.files.found import COLUMN_NAMES, Found, Link, Node, ReadingOptions
 from robustness.files.rows import Content, Rows, bare, is_number, split_lines
 
-__all__ = ["arrows_of", "columns_of", "found_links", "links_of", "sections_of", "without_counts"]
+__all__ = [
+    "NO_ISOLATED",
+    "PARALLEL",
+    "arrows_of",
+    "columns_of",
+    "found_links",
+    "links_of",
+    "sections_of",
+    "without_counts",
+]
 
 _ARROW = re.compile(r"^(?P<u>\S.*?)\s*(?P<kind>->|--|<->)\s*(?P<v>\S.*?)\s*[;,]?$")
 
 _LOSS = "an edge list reads every label as text"
-_NO_ISOLATED = f"{_LOSS} and has no isolated nodes"
+#: What an edge list loses, and how links that it gives twice are told of.
+NO_ISOLATED = f"{_LOSS} and has no isolated nodes"
+PARALLEL = "{} given more than once count once"
 
 
 def found_links(links: list[Link], directed: bool | None, *notes: str, nodes: list[str] | None = None) -> Found:
     """Return what a list of links holds; its nodes are the ends of its links and those in ``nodes``."""
     labels: dict[Hashable, None] = dict.fromkeys(nodes or [])
     labels.update(dict.fromkeys(end for link in links for end in (link.source, link.target)))
-    loss = _NO_ISOLATED if nodes is None else _LOSS
-    parallel = "{} given more than once count once"
-    return Found([Node(label) for label in labels], links, directed, list(notes), loss=loss, parallel=parallel)
+    loss = NO_ISOLATED if nodes is None else _LOSS
+    return Found([Node(label) for label in labels], links, directed, list(notes), loss=loss, parallel=PARALLEL)
 
 
 def arrows_of(content: Content) -> Found | None:

@@ -174,7 +174,7 @@ def graph_of(found: Found, options: ReadingOptions) -> Digraph:
     kept = ends[ends[:, 0] != ends[:, 1]]
     is_single = one_way[ends[:, 0] != ends[:, 1]]
     loops = len(ends) - len(kept)
-    distinct = len(np.unique(_codes(np.where(is_single[:, None], kept, np.sort(kept, axis=1)), len(names), is_single)))
+    distinct = _count(_codes(np.where(is_single[:, None], kept, np.sort(kept, axis=1)), len(names), is_single))
     both = int((~is_single).sum())
     if directed and both:
         notes.insert(0, f"{both} of the links run both ways")
@@ -223,6 +223,11 @@ def _codes(ends: _Ends, n: int, mark: npt.NDArray[np.bool_] | int = 0) -> npt.ND
     return (ends[:, 0] * n + ends[:, 1]) * 2 + mark
 
 
+def _count(codes: npt.NDArray[np.int64]) -> int:
+    """Return how many different codes there are, by sorting, which is faster than a table of so many."""
+    return int((np.diff(np.sort(codes)) > 0).sum()) + (len(codes) > 0)
+
+
 def _default_direction(found: Found, options: ReadingOptions, silent: _Ends, asked: list[str]) -> bool:
     """Return whether links that say nothing themselves (``silent``) run one way."""
     if options.directed is not None:
@@ -232,6 +237,9 @@ def _default_direction(found: Found, options: ReadingOptions, silent: _Ends, ask
     if found.directed is not None:
         return found.directed
     pairs = silent[silent[:, 0] != silent[:, 1]]
+    n = len(found.nodes)
+    if _count(_codes(pairs, n)) == _count(_codes(np.sort(pairs, axis=1), n)):
+        return False  # no link is given in both directions
     has_reverse = np.isin(_codes(pairs[:, ::-1], len(found.nodes)), _codes(pairs, len(found.nodes)))
     if has_reverse.any() and not has_reverse.all():
         twice, once = (

@@ -11,9 +11,10 @@ from robustness.digraph import Digraph, GraphWarning
 from robustness.errors import InvalidGraph, UnreadableTopology
 from robustness.files import matrix_market, pajek
 from robustness.files.adjacency_list import lists_of, neighbours_of, refuse_lists_of_neighbours
-from robustness.files.edge_list import arrows_of, links_of, sections_of, without_counts
+from robustness.files.edge_list import NO_ISOLATED, PARALLEL, arrows_of, links_of, sections_of, without_counts
 from robustness.files.found import Found, ReadingOptions, graph_of
 from robustness.files.matrix import matrix_of_rows
+from robustness.files.number_links import number_links
 from robustness.files.rows import content_of, rows_of
 from robustness.files.text import texts_of, warn_lossy
 
@@ -35,6 +36,8 @@ def decode_table(data: bytes, options: ReadingOptions, kind: Kind = "table", *, 
             return matrix_market.decode(data, options)
         if re.match(rb"(\xef\xbb\xbf)?\s*\*(vertices|network)\b", data, re.IGNORECASE):
             return pajek.decode(data, options)
+    if kind in ("table", "edge-list") and (long := number_links(data, options, NO_ISOLATED, PARALLEL)) is not None:
+        return graph_of(long, options)
     content = content_of(data, options.skip_lines)
     may_be_links = kind in ("table", "edge-list") and options.rows is None
     found: Found | None = None
