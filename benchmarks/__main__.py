@@ -56,7 +56,7 @@ def _suite(options: argparse.Namespace) -> list[str]:
         f"{len(suite)} instances, seed {options.seed}, cap {settings.cap:g} s for each method and instance, "
         f"jobs {settings.jobs}; seconds are wall-clock, cpu is the process's\n"
         "ours: until r* is known, nothing told; the others are told r*, refute it and decide r* + 1 (in brackets: "
-        "times ours)\nwarm: imports and kernel compilation happen before, and are not counted\n"
+        "times ours)\nwarm: imports happen before, and are not counted\n"
     )
     print(tables.header(settings), flush=True)
     comparisons: list[Comparison] = []

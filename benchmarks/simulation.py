@@ -2,7 +2,7 @@
 
 ``python -m benchmarks.simulation [--quick] [--jobs N] [--seed N] [--output FILE]``. The plain loop is measured on a few
 runs and steps of the same scenario and its time scaled up, since all of it would take an hour; every ratio is printed.
-Compilation (once per machine, then cached) happens in a warm-up that is not counted. Both give the same outcomes, which
+Imports happen in a warm-up that is not counted. Both give the same outcomes, which
 is checked on the part that both run.
 """
 

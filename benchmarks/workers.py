@@ -1,6 +1,6 @@
 """Child processes: whatever is measured runs in one, so that a cap is hard and no memory is shared.
 
-A worker serves one call at a time and stays warm between calls (imports done, kernels compiled). A call that is not
+A worker serves one call at a time and stays warm between calls (imports done). A call that is not
 back in time is killed with its process, whatever it is doing, and the next call gets a fresh one.
 """
 
@@ -16,7 +16,7 @@ from typing import Any
 
 __all__ = ["CallFailed", "OutOfTime", "Worker", "WorkerLost"]
 
-#: Seconds for imports and, the first time after an edit, the compilation of every kernel.
+#: Seconds for imports.
 _WARM_UP_SECONDS = 600.0
 
 

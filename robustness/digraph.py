@@ -25,7 +25,7 @@ from robustness.places import place_of
 if TYPE_CHECKING:
     import networkx as nx
 
-__all__ = ["Digraph", "GraphLike", "GraphWarning", "as_digraph", "plain_label"]
+__all__ = ["Digraph", "GraphLike", "GraphWarning", "as_digraph", "plain_label", "without_loops"]
 
 
 class GraphWarning(UserWarning):
@@ -120,14 +120,7 @@ class Digraph:
         self.labels = tuple(_canonical_order(plain))
         index = {label: i for i, label in enumerate(self.labels)}
         ends = np.array([index[label] for label in plain], dtype=np.int64)[ends] if len(ends) else ends
-        loops = ends[:, 0] == ends[:, 1]
-        if loops.any():
-            warnings.warn(
-                f"{int(loops.sum())} self-loop(s) dropped: no robustness definition depends on them",
-                GraphWarning,
-                stacklevel=3,
-            )
-            ends = ends[~loops]
+        ends = without_loops(ends, stacklevel=4)
         codes = np.sort(ends[:, 1] * len(given) + ends[:, 0])
         heads, tails = np.divmod(codes[np.diff(codes, prepend=-1) > 0], max(len(given), 1))
         self.in_indptr = np.searchsorted(heads, np.arange(len(given) + 1)).astype(np.int64)
@@ -284,6 +277,20 @@ def as_digraph(graph: GraphLike) -> Digraph:
         "robustness.from_adjacency takes a matrix, from_edges pairs, from_neighbours a dict, from_igraph a graph of "
         "igraph, read_topology a file"
     )
+
+
+def without_loops(ends: npt.NDArray[np.int64], place: str = "", *, stacklevel: int) -> npt.NDArray[np.int64]:
+    """Return arcs, shape ``(m, 2)``, without self-loops, which are dropped with a :class:`GraphWarning`."""
+    loops = ends[:, 0] == ends[:, 1]
+    if not loops.any():
+        return ends
+    warnings.warn(
+        f"{place}{int(loops.sum())} self-loop(s) dropped: no robustness definition depends on them",
+        GraphWarning,
+        stacklevel=stacklevel,
+    )
+    kept: npt.NDArray[np.int64] = ends[~loops]
+    return kept
 
 
 def plain_label(label: Hashable) -> Label:

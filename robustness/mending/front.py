@@ -99,9 +99,7 @@ def mend(
     >>> found.verdict.value, found.cost, found.lower_bound
     ('optimal', 2, 2)
     """
-    if time_limit is not None:
-        load_solver()
-    limits = Limits.of(time_limit, jobs, seed, progress)
+    limits = _limits_of(time_limit, jobs, seed, progress)
     graph = as_digraph(G)
     goals = goals_of(goal)
     arcs_only = graph.directed if one_way is None else bool(one_way)
@@ -157,9 +155,7 @@ def thin(
     >>> found.verdict.value, found.cost, len(found.dropped)
     ('optimal', 7, 3)
     """
-    if time_limit is not None:
-        load_solver()
-    limits = Limits.of(time_limit, jobs, seed, progress)
+    limits = _limits_of(time_limit, jobs, seed, progress)
     graph = as_digraph(G)
     goals = goals_of(goal)
     labels = graph.labels
@@ -190,6 +186,13 @@ def thin(
             on_improvement(with_dropped(result))
 
     return with_dropped(_answer(empty, goals, actions, limits, graph.directed, tell))
+
+
+def _limits_of(time_limit: float | None, jobs: int, seed: int, progress: Callable[[Progress], None] | None) -> Limits:
+    """Return the limits; their clock starts when the solver has been imported."""
+    if time_limit is not None:
+        load_solver()
+    return Limits.of(time_limit, jobs, seed, progress)
 
 
 #: Seconds that are kept back for the result, and for each action.

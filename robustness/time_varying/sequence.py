@@ -6,7 +6,6 @@ arcs that ever occur (the *arc universe*) and, for every stored step, which of t
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from itertools import chain
 from typing import Any, final
@@ -15,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from certificates.graph import Label
-from robustness.digraph import Digraph, GraphLike, GraphWarning, as_digraph
+from robustness.digraph import Digraph, GraphLike, as_digraph, without_loops
 from robustness.errors import InvalidGraph, InvalidParameter
 
 __all__ = ["SlidingUnion", "TimeVaryingGraph", "as_time_varying"]
@@ -328,13 +327,6 @@ def _encode(
         ids = np.fromiter(map(index.__getitem__, chain.from_iterable(pairs)), dtype=np.int64).reshape(-1, 2)
     except (KeyError, TypeError) as unknown:
         raise InvalidGraph(f"{name}: an arc joins two nodes of the sequence, but {unknown} is none") from None
-    loops = ids[:, 0] == ids[:, 1]
-    if loops.any():
-        warnings.warn(
-            f"{name}: {int(loops.sum())} self-loop(s) dropped: no robustness definition depends on them",
-            GraphWarning,
-            stacklevel=4,
-        )
-        ids = ids[~loops]
+    ids = without_loops(ids, f"{name}: ", stacklevel=5)
     codes = ids @ np.array([1, n])
     return np.unique(codes if directed else np.concatenate([codes, ids @ np.array([n, 1])]))
