@@ -12,6 +12,8 @@ import networkx as nx
 import pytest
 
 import robustness as rb
+from robustness.answers import Answer
+from robustness.decision import determination
 from robustness.decision.determination import EXACT_S_NODES, PROFILE_NODES
 from robustness.decision.ladder import TRANSFORM_NODES
 from robustness.limits import Limits, Steps
@@ -188,3 +190,55 @@ def test_no_file_has_a_number_of_seconds_that_decides() -> None:
     }
     assert {"GRACE", "_STEP", "_ALONE"} <= found
     assert found <= allowed, found - allowed
+
+
+class TestSOnSparseGraphs:
+    def test_cp_sat_says_what_the_definition_says(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """With a search that never decides an s above 1, on graphs small enough for the oracle."""
+        monkeypatch.setattr(determination, "EXACT_S_NODES", 0)
+        monkeypatch.setattr(determination, "PROFILE_NODES", 0)
+        search = determination._Work.search
+
+        def giving_up(self: Any, r: int, s: int, limits: Limits) -> Answer:
+            return search(self, r, s, limits) if s == 1 else Answer.undecided("given up")
+
+        monkeypatch.setattr(determination._Work, "search", giving_up)
+        by_solver = 0
+        for seed in range(12):
+            graph = nx.gnp_random_graph(8, 0.5, seed=seed, directed=seed % 2 == 1)
+            found = rb.determine_robustness(graph, time_limit=60)
+            table = brute_profile(rb.Digraph.from_networkx(graph))
+            assert found.r == max((r for r, s in table.items() if s), default=0)
+            if found.r:
+                assert found.s_is_exact
+                assert found.s == table[found.r]
+                assert found.s_bounds is not None
+                by_solver += "cp-sat" in found.s_bounds.lower.reason
+        assert by_solver > 1
+
+    def test_both_share_a_limit(self) -> None:
+        found = rb.determine_robustness(nx.random_regular_graph(5, 40, seed=1), time_limit=60)
+        assert (found.r, found.s, found.s_is_exact) == (2, 4, True)
+
+    @pytest.mark.slow
+    def test_what_the_search_alone_leaves_open(self) -> None:
+        """The search alone has no end on this graph in a minute."""
+        found = rb.determine_robustness(nx.random_regular_graph(5, 60, seed=1), time_limit=400)
+        assert (found.r, found.s, found.s_is_exact) == (2, 4, True)
+        assert found.s_bounds is not None
+        assert "cp-sat" in found.s_bounds.lower.reason
+
+    def test_dense_and_large_graphs_are_left_to_the_search(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        asked: list[str] = []
+        searched = determination._searched
+
+        def noting(graph: rb.Digraph, r: int, s: int, name: str, limits: Limits) -> Answer:
+            asked.append(name)
+            return searched(graph, r, s, name, limits)
+
+        monkeypatch.setattr(determination, "_searched", noting)
+        for graph in (nx.gnp_random_graph(40, 0.5, seed=1), nx.random_regular_graph(4, 120, seed=1)):
+            rb.determine_robustness(graph, time_limit=2)
+        rb.determine_robustness(nx.circulant_graph(60, [1, 2]))
+        assert asked
+        assert "cp-sat" not in asked

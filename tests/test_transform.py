@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robustness import Digraph, Undecided, Verdict
+from robustness import Digraph, Undecided, Verdict, robustness_profile
 from robustness.decision.algorithms import exhaustive, transform
 from robustness.limits import Limits
 from tests.oracles import brute_profile, digraphs, graphs, is_violating, labelled_digraphs
@@ -185,3 +185,34 @@ def test_progress_is_reported_and_may_interrupt():
         transform.profile(random_digraph(23, 0.5, 1), Limits(progress=interrupt))
     assert seen[0].nodes > 0
     assert seen[0].note
+
+
+def test_a_profile_that_a_limit_cuts_short_is_told_as_far_as_it_goes(monkeypatch):
+    graph = random_digraph(17, 0.6, 1)
+    whole = transform.profile(graph, NO_LIMITS)
+    assert sum(map(bool, whole.values())) > 2
+    work = transform._Lattice.least_exempt
+
+    def stopping(self, r):
+        if r == 3:
+            raise Undecided("the time limit was reached: raise it")
+        return work(self, r)
+
+    monkeypatch.setattr(transform._Lattice, "least_exempt", stopping)
+    with pytest.raises(Undecided, match="time limit") as stopped:
+        transform.profile(graph, NO_LIMITS)
+    assert dict(stopped.value.profile) == {1: whole[1], 2: whole[2]}
+    assert stopped.value.bounds.lower.value <= whole[3] <= stopped.value.bounds.upper.value == whole[2]
+
+
+def test_up_to_28_nodes_one_transform_for_every_r_up_to_one_beyond_the_greatest(monkeypatch):
+    """And without the memory for it, the descent by search."""
+    graph = random_digraph(23, 0.4, 2)
+    asked = []
+    work = transform._Lattice.least_exempt
+    monkeypatch.setattr(transform._Lattice, "least_exempt", lambda self, r: (asked.append(r), work(self, r))[1])
+    table = robustness_profile(graph)
+    greatest = max(r for r, s in table.items() if s)
+    assert asked == list(range(1, greatest + 2))
+    monkeypatch.setattr(transform, "available_memory", lambda: 1 << 20)
+    assert robustness_profile(graph) == table

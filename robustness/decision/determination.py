@@ -20,7 +20,7 @@ from robustness.errors import Undecided
 from robustness.limits import UNLIMITED, Limits, Steps
 from robustness.results import Bound, Bounds, RobustnessResult, Witness
 
-__all__ = ["EXACT_S_NODES", "PROFILE_NODES", "determine", "profile"]
+__all__ = ["EXACT_S_NODES", "PROFILE_NODES", "SOLVER_NODES", "determine", "profile"]
 
 #: Up to this many nodes ``auto`` reads the whole profile, and with it r* and s, off the subset-minimum transform, in a
 #: tenth of a second: O(n 2^n).
@@ -28,6 +28,10 @@ PROFILE_NODES = 22
 
 #: Up to this many nodes s_max(r) is found by one transform where the search does not find it sooner: two seconds.
 EXACT_S_NODES = 28
+
+#: Up to this many nodes, and this many in-neighbours each on average, CP-SAT looks for s too when there is a time limit
+#: that both can share (random 5-regular, n = 60, (2,4): 15 seconds, and no end in sight for the search).
+SOLVER_NODES, _SPARSE = 100, 10
 
 # Budgets, counted in steps (robustness.limits), so that the answer does not depend on the machine or its load. They
 # share what the user's time limit leaves, which alone may cut the work short.
@@ -112,9 +116,11 @@ def profile(graph: Digraph, algorithm: str, limits: Limits) -> Mapping[int, int]
     """Return ``r -> s_max(r)`` for r = 1 .. ceil(n/2), or raise Undecided with the part that is proven."""
     if graph.n < 2:
         return {1: 1} if graph.n else {}
-    if algorithm == "transform" or (algorithm == "auto" and graph.n <= PROFILE_NODES):
-        from robustness.decision.algorithms.transform import profile as transform_profile
+    from robustness.decision.algorithms.transform import memory_suffices
+    from robustness.decision.algorithms.transform import profile as transform_profile
 
+    # One transform for every r up to r* + 1, where the descent below would take one for every r.
+    if algorithm == "transform" or (algorithm == "auto" and graph.n <= EXACT_S_NODES and memory_suffices(graph.n)):
         return transform_profile(graph, limits)
     work = _Work(graph, algorithm, limits)
     table: dict[int, int] = {}
@@ -288,14 +294,32 @@ def _greatest_s(work: _Work, r: int, known: int, limits: Limits) -> Bounds:
     step = 1
     while found.lower.value < found.upper.value:
         s = min(found.lower.value + step, found.upper.value)
-        answer = work.search(r, s, limits)
+        answer, name = _searched_by_turns(work, r, s, limits)
         if answer.verdict is Verdict.UNDECIDED:
             break
         is_robust = answer.verdict is Verdict.ROBUST
-        reason = f"{work.name} refuted every violating pair" if is_robust else "violating pair"
+        reason = f"{name} refuted every violating pair" if is_robust else "violating pair"
         found = found.s_narrowed_by(Question(graph, r, s), answer, reason)
         step = 2 * step if is_robust else 1
     return found
+
+
+def _searched_by_turns(work: _Work, r: int, s: int, limits: Limits) -> tuple[Answer, str]:
+    """Decide (r,s)-robustness, and name what decided.
+
+    On sparse graphs the search loses its way where nodes may be exempt, and CP-SAT does not. So of a time limit an
+    eighth is for the search, half of the rest for CP-SAT, and the rest for the search again.
+    """
+    graph, turns = work.graph, [("search", limits)]
+    is_sparse = graph.n <= SOLVER_NODES and graph.arc_count <= _SPARSE * graph.n
+    is_here = limits.executor is None and limits.state is None
+    if s > 1 and work.algorithm == "auto" and limits.deadline is not None and is_sparse and is_here:
+        turns = [("search", limits.share(1 / 8)), ("cp-sat", limits.share(9 / 16)), ("search", limits)]
+    for who, part in turns:
+        answer = work.search(r, s, part) if who == "search" else _searched(graph, r, s, who, part)
+        if answer.verdict is not Verdict.UNDECIDED or limits.expired():
+            break
+    return answer, work.name if who == "search" else who
 
 
 def _cheap_s(work: _Work, r: int, known: Bounds, limits: Limits) -> Bounds:

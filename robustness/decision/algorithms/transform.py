@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 import numpy.typing as npt
@@ -31,8 +32,9 @@ from robustness.digraph import Digraph
 from robustness.errors import Undecided
 from robustness.evidence import Exhausted, Pair
 from robustness.limits import Limits, Progress
+from robustness.results import Bound, Bounds
 
-__all__ = ["available_memory", "decide", "largest_s", "memory_needed", "profile"]
+__all__ = ["available_memory", "decide", "largest_s", "memory_needed", "memory_suffices", "profile"]
 
 _Bytes = npt.NDArray[np.uint8]
 
@@ -110,7 +112,7 @@ def profile(graph: Digraph, limits: Limits) -> dict[int, int]:
     Raises
     ------
     Undecided
-        When the deadline passed or the memory needed is not available.
+        When the deadline passed or the memory needed is not available; with the part of the profile that is proven.
 
     Notes
     -----
@@ -123,11 +125,14 @@ def profile(graph: Digraph, limits: Limits) -> dict[int, int]:
     if graph.n < 2:
         return dict.fromkeys(range(1, graph.n + 1), 1)
     lattice = _Lattice(graph, limits)
-    table = dict.fromkeys(range(1, largest_conceivable_r(graph.n) + 1), 0)
-    for r in table:
-        table[r] = min(lattice.least_exempt(r)[0], graph.n)
-        if not table[r]:
-            break
+    table: dict[int, int] = {}
+    most = graph.n
+    for r in range(1, largest_conceivable_r(graph.n) + 1):
+        try:
+            most = table[r] = min(lattice.least_exempt(r)[0], graph.n) if most else 0
+        except Undecided as limit:
+            implied = Bounds(Bound(0, "nothing proven yet"), Bound(most, f"s_max({r - 1})" if table else "s_max <= n"))
+            raise Undecided(str(limit), bounds=implied, profile=MappingProxyType(table)) from None
     return table
 
 
@@ -259,9 +264,14 @@ class _Lattice:
             self.limits.progress(Progress(block << self.low_bits, note))
 
 
-def _require_memory(n: int) -> None:
+def memory_suffices(n: int) -> bool:
+    """Return whether the memory for n nodes is there now."""
     # 2^60 bytes exist nowhere; beyond, the estimate itself would be a huge integer.
-    if n > 60 or memory_needed(n) > available_memory() * _SHARE:
+    return n <= 60 and memory_needed(n) <= available_memory() * _SHARE
+
+
+def _require_memory(n: int) -> None:
+    if not memory_suffices(n):
         raise Undecided(
             f"the transform needs 1.5 * 2^{n} bytes for {n} nodes, more than {_SHARE:.0%} of the memory available: "
             "use subset-search"
