@@ -79,3 +79,18 @@ def test_every_path_in_the_documents_exists() -> None:
         if not (ROOT / place).exists()
     }
     assert not gone
+
+
+@pytest.mark.parametrize("package", ["robustness", "certificates", "cli"])
+def test_no_sentence_runs_on_in_the_next_attribute(package: str) -> None:
+    """Each parameter and attribute is described by sentences of its own, since each is looked up alone."""
+    run_on = []
+    for path in sorted((ROOT / package).rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
+                lines = [line.strip() for line in (ast.get_docstring(node) or "").splitlines()]
+                code = [line.startswith((">>>", "...")) for line in lines]
+                for line, before, is_code in zip(lines[1:], code, code[1:], strict=False):
+                    if (line.endswith(" ...") and not is_code) or (re.match(r"\.\.\. [a-z]", line) and not before):
+                        run_on.append(f"{path.relative_to(ROOT)}: {line}")
+    assert not run_on
