@@ -16,6 +16,7 @@ import robustness as rb
 from robustness import mending, threat_models, time_varying, traps
 from robustness.decision.algorithms import subset_search
 from robustness.limits import Limits, Progress
+from robustness.sampling import sample_robustness
 from robustness.simulation import find_attack
 from robustness.traps import searching
 
@@ -61,6 +62,7 @@ FRONTS: dict[str, Callable[..., Any]] = {
     "thin": lambda **effort: rb.thin(GRAPH, 3, keep=list(GRAPH.edges), **effort),
     "best_within": lambda **effort: mending.best_within(GRAPH, 0, **effort),
     "certify_mending": certificate_of_mending,
+    "sample_robustness": lambda **effort: sample_robustness(GRAPH, 2, nodes=18, repeats=1, **effort),
     "find_graph": lambda **effort: rb.find_graph(19, satisfies=["2-robust"], method="cp-sat", **effort),
 }
 

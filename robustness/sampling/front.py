@@ -87,7 +87,7 @@ def sample_robustness(
     if seed is not None and seed < 0:
         raise InvalidParameter(f"seed is at least 0, not {seed}")
     drawn = secrets.randbits(63) if seed is None else seed
-    limits = Limits.of(time_limit, jobs, 0, progress)
+    limits = Limits.of(time_limit, jobs, drawn % 2**31, progress)  # as solvers take seeds; no verdict depends on it
     test = _Test(graph, min(nodes, graph.n), repeats, drawn, level, limits)
     return test.result(r, started)
 
