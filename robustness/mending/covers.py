@@ -30,7 +30,7 @@ from collections.abc import Iterable, Sequence
 
 from robustness.mending.demands import bits
 
-__all__ = ["Cover", "lacking", "rigid_components", "room", "starts_of"]
+__all__ = ["Cover", "lacking", "cover_around", "rigid_components", "room", "starts_of"]
 
 #: A family of sets, as masks.
 Cover = tuple[int, ...]
@@ -51,24 +51,51 @@ def starts_of(heard: Sequence[int]) -> list[int]:
     return sorted({1 << i | 1 << j for i, mask in enumerate(heard) for j in bits(mask)})
 
 
-def rigid_components(heard: Sequence[int]) -> Cover:
+def cover_around(heard: Sequence[int], U: int, r: int) -> Cover:
+    """Return a cover of a network with a set of nodes inside one of its sets: for r = 2 the best there is."""
+    if r == 2:
+        return rigid_components(heard, U)
+    near = _near(heard)
+    V, waiting = U, True
+    while waiting:
+        waiting = False
+        for i, mask in enumerate(near):
+            if not V >> i & 1 and (mask & V).bit_count() >= r:
+                V |= 1 << i
+                waiting = True
+    links = (1 << i | 1 << j for i, mask in enumerate(near) for j in bits(mask) if j < i)
+    return (V, *(link for link in links if link & ~V))
+
+
+def rigid_components(heard: Sequence[int], whole: int = 0) -> Cover:
     """Return the rigid components of a network, whose directions are ignored, as masks of at least two nodes.
 
-    Two of them share at most one node, and every link lies in one.
+    Two of them share at most one node, and every link lies in one. ``whole``: a set all of whose nodes are linked.
     """
     n = len(heard)
-    near = list(heard)
-    for i, mask in enumerate(heard):
-        for j in bits(mask):
-            near[j] |= 1 << i
+    near = _near(heard)
     game = _Pebbles(n)
     components: tuple[int, ...] = ()
+    if whole.bit_count() > 1:
+        first, second, *others = bits(whole)
+        for u, v in ((first, second), *((each, end) for each in others for end in (first, second))):
+            game.insert(u, v)
+        components = (whole,)
     for u in range(n):
         for v in bits(near[u]):
             if u < v and not any(each >> u & 1 and each >> v & 1 for each in components) and game.insert(u, v):
                 new = game.component(u, v)
                 components = (*(each for each in components if each & ~new), new)
     return components
+
+
+def _near(heard: Sequence[int]) -> list[int]:
+    """Return for every node those it hears or is heard by."""
+    near = list(heard)
+    for i, mask in enumerate(heard):
+        for j in bits(mask):
+            near[j] |= 1 << i
+    return near
 
 
 class _Pebbles:

@@ -6,7 +6,8 @@ network reaches the goal, and gives up what is superfluous. Every violation met 
 under the proposal, since the proposal lies inside the repaired choice. The proposal's cost is a lower bound, the
 repaired choice an upper one; both improve until they meet. Once a choice is known, the master is mostly asked for any
 choice that costs less and meets all demands: that is quicker than to minimise, its violations are harder to evade, and
-when there is none, the best is optimal. Between rounds the best is taken apart a little and repaired in another way.
+when there is none, the best is optimal. Between rounds the best is taken apart a little and repaired in another way, and
+a tree search (:mod:`robustness.mending.deepening`) goes on that raises the bound step by step.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from robustness.limits import Limits, Progress
 from robustness.mending.actions import Actions
 from robustness.mending.construction import grown_choices
 from robustness.mending.covers import Cover, lacking, rigid_components
+from robustness.mending.deepening import Deepening
 from robustness.mending.demands import (
     Side,
     Unit,
@@ -97,6 +99,8 @@ class Search:
         The demands that the master problem holds.
     covers : list of (Part, Cover)
         The covers behind its other rows (:mod:`robustness.mending.covers`).
+    starts : list of (Part, int, Cover)
+        Sets of nodes with a cover around each, behind the rest of them.
     """
 
     graph: Digraph
@@ -112,11 +116,13 @@ class Search:
     reason: str = ""
     rows: list[Pair] = field(default_factory=list)
     covers: list[tuple[Part, Cover]] = field(default_factory=list)
-    _base: list[int] = field(default_factory=list)
+    starts: list[tuple[Part, int, Cover]] = field(default_factory=list)
+    base: list[int] = field(default_factory=list)
     _seen: set[Pair] = field(default_factory=set)
     _pool: dict[tuple[Part, int], dict[int, Side]] = field(default_factory=dict)
     _master: Master | None = None
     _effort: float = _EFFORT
+    _deepening: Deepening | None = None
     _into: dict[int, list[tuple[int, int]]] = field(default_factory=lambda: defaultdict(list))
 
     def cost(self, chosen: Iterable[int]) -> int:
@@ -135,7 +141,7 @@ class Search:
 
     def run(self) -> None:
         """Search until the bounds meet, the goal is proven to be out of reach, or a limit comes."""
-        self._base = masks_of(self.graph)
+        self.base = masks_of(self.graph)
         for a, item in enumerate(self.actions.items):
             for tail, head in item.arcs:
                 self._into[head].append((tail, a))
@@ -145,7 +151,7 @@ class Search:
             self.is_impossible = self.witness is not None
             if self.is_impossible:
                 return
-            self._improve(everything)
+            self.improve(everything)
             self._start()
             turn = 1
             while not self.is_done:
@@ -158,26 +164,29 @@ class Search:
         """Find a first choice, write the first demands, and find the first bound and better choices."""
         if self._keeps_caps(self.actions.required) and self._is_enough(self.actions.required, self.limits.share(0.5)):
             self.bound = self.cost(self.actions.required)
-            self._improve(self.actions.required)
+            self.improve(self.actions.required)
             return
-        grown = sorted(grown_choices(self._base, self.parts, self.actions), key=self.cost)
+        grown = sorted(grown_choices(self.base, self.parts, self.actions), key=self.cost)
         for chosen in grown:
             if (self.best is None or self.cost(chosen) < self.cost(self.best)) and self._is_enough(chosen, self.limits):
-                self._improve(chosen)
+                self.improve(chosen)
         if self.is_done:
             return
         self._master = Master(self.graph, self.actions, self.limits)
-        self._spread(self._base)
-        self._grow(self._base)
+        self._deepening = Deepening.of(self)
+        self._spread(self.base)
+        self._grow(self.base)
         for part in self.parts:
             if part.trap is None and self.graph.n <= _FEW:
-                for pair in every_pair(self._base, part):
-                    self._learn(*pair)
+                for pair in every_pair(self.base, part):
+                    self.learn(*pair)
         # A bound before the first repair, which can take long; counted, so that it is the same on every machine.
         self._believe(self._master.solve(self.limits.share(0.5), None, _FIRST_EFFORT))
         self._tell()
+        if not self.is_done and self._deepening is not None:
+            self._deepening.go_on()
         if not self.is_done:
-            self._improve(self._repair(grown[0] if grown else self.actions.required, 0))
+            self.improve(self._repair(grown[0] if grown else self.actions.required, 0))
 
     def _is_enough(self, chosen: Iterable[int], limits: Limits) -> bool:
         """Return whether a choice is found to reach the goal, by the exact search alone and within these limits."""
@@ -207,26 +216,31 @@ class Search:
             self._effort *= _GROWTH_ON_FEW if is_few else _GROWTH
         if proposal.chosen is not None and not self.is_done:
             known = len(self.rows), len(self.covers)
-            heard = self._heard(proposal.chosen)
+            heard = self.heard(proposal.chosen)
             self._spread(heard)
             self._grow(heard)
             for again in range(1 + _REPAIRED // self.graph.n**2):
-                self._improve(self._repair(proposal.chosen, turn, again))
+                self.improve(self._repair(proposal.chosen, turn, again))
                 if (len(self.rows), len(self.covers)) == known:  # it reaches the goal itself
                     break
             if (len(self.rows), len(self.covers)) == known and proposal.is_optimal:
                 self.bound = max(self.bound, self.cost(proposal.chosen))
         if not self.is_done and self.best is not None:
-            self._improve(self._shaken(self.best, turn))
+            self.improve(self._shaken(self.best, turn))
+        if not self.is_done and self._deepening is not None:
+            self._deepening.go_on()
         if not self.is_done and self.limits.expired():
             raise Undecided("the limit came before the bounds met")
 
     def _believe(self, proposal: Proposal) -> None:
         """Take in what a call of the solver says about the bound."""
         if proposal.bound is None and self.best is None:
-            self._rule_out()
+            self.rule_out()
             return
-        proven = self.cost(self.best or ()) if proposal.bound is None else proposal.bound
+        self.raise_bound(self.cost(self.best or ()) if proposal.bound is None else proposal.bound)
+
+    def raise_bound(self, proven: int) -> None:
+        """No choice that reaches the goal costs less than this."""
         if proven > self.bound:
             self.bound = proven
             self._tell()
@@ -238,7 +252,7 @@ class Search:
         gone = rng.sample(movable, min(len(movable), rng.randint(2, _MOST_SHAKEN)))
         return self._repair(chosen.difference(gone), turn)
 
-    def _rule_out(self) -> None:
+    def rule_out(self) -> None:
         """No choice meets the demands; with a budget, none within it: then it is a bound on the cost."""
         self.is_impossible = True
         if self.actions.budget is not None:
@@ -256,7 +270,8 @@ class Search:
         if self.on_improvement is not None:
             self.on_improvement(self)
 
-    def _improve(self, chosen: frozenset[int] | None) -> None:
+    def improve(self, chosen: frozenset[int] | None) -> None:
+        """Take in a choice that reaches the goal, where it is better and allowed."""
         budget = self.actions.budget
         if chosen is None or (budget is not None and self.cost(chosen) > budget) or not self._keeps_caps(chosen):
             return
@@ -293,20 +308,26 @@ class Search:
             if not is_early and (partners == _MOST_PARTNERS or not holds_apart(side, other, heard)):
                 continue
             if fit(side, other):
-                self._learn(side, other)
+                self.learn(side, other)
                 self._in_time()
                 partners += 1
         group[side.S] = side
 
-    def _learn(self, first: Side, second: Side) -> None:
+    def learn(self, first: Side, second: Side) -> None:
+        """Take a pair into the demands, unless it is known or met before mending."""
         pair = (first, second) if first.S < second.S else (second, first)
-        if pair not in self._seen and self._master is not None and holds_apart(*pair, self._base):
+        if pair not in self._seen and self._master is not None and holds_apart(*pair, self.base):
             self._seen.add(pair)
             self.rows.append(pair)
             self._master.add(*pair)
 
-    def _heard(self, chosen: Iterable[int]) -> list[int]:
-        heard = list(self._base)
+    def sides(self, part: Part) -> list[Side]:
+        """Return all sides of a part that were met, with no malicious set."""
+        return list(self._pool.get((part, 0), {}).values())
+
+    def heard(self, chosen: Iterable[int]) -> list[int]:
+        """Return the in-neighbour masks of the network with a choice."""
+        heard = list(self.base)
         for a in chosen:
             for tail, head in self.actions.items[a].arcs:
                 heard[head] |= 1 << tail
@@ -317,21 +338,21 @@ class Search:
         chosen = set(proposal)
         rng = random.Random(f"{self.limits.seed} {turn} {again}")
         while True:
-            pair = self._open_pair(chosen)
+            pair = self.open_pair(chosen)
             if pair is None:
-                self._improve(frozenset(chosen))
+                self.improve(frozenset(chosen))
                 return self._reduced(frozenset(chosen), rng)
             if not self._break(pair, chosen, rng):
                 return None
 
-    def _open_pair(self, chosen: Iterable[int], *, thorough: bool = True) -> Pair | None:
+    def open_pair(self, chosen: Iterable[int], *, thorough: bool = True) -> Pair | None:
         """Return a demand that the choice does not meet: a known one, else the oracle's; None when all are met.
 
         ``thorough``: what the oracle finds is followed by all that grows in this network.
         """
         if self.limits.expired():
             raise Undecided("the limit came during a repair")
-        heard = self._heard(chosen)
+        heard = self.heard(chosen)
         for pair in self.rows:
             if holds_apart(*pair, heard):
                 return pair
@@ -341,14 +362,14 @@ class Search:
         first, second = shrunk(*sides_of(*found), heard)
         for side in (first, second):
             self._take(side, heard)
-        self._learn(first, second)
+        self.learn(first, second)
         if thorough:
             self._grow(heard)
         return first, second
 
     def _break(self, pair: Pair, chosen: set[int], rng: random.Random) -> bool:
         """Add the cheapest actions that meet one more unit of the pair; return whether there are any."""
-        heard = self._heard(chosen)
+        heard = self.heard(chosen)
         gains = self._gains(heard)
         options: list[tuple[float, float, list[int]]] = []
         n = len(heard)
@@ -393,7 +414,7 @@ class Search:
     def _room(self, node: int, heard: Sequence[int]) -> int:
         """Return how many further in-neighbours a node may gain."""
         most = self.actions.most
-        return len(heard) if most is None else most[node] - (heard[node] & ~self._base[node]).bit_count()
+        return len(heard) if most is None else most[node] - (heard[node] & ~self.base[node]).bit_count()
 
     def _is_free(self, action: int, heard: Sequence[int]) -> bool:
         return all(self._room(head, heard) > 0 for _, head in self.actions.items[action].arcs)
@@ -409,8 +430,8 @@ class Search:
                 order.sort(key=lambda a: -self.actions.items[a].cost)
             for a in order:
                 kept.discard(a)
-                if self._open_pair(kept, thorough=False) is None:
-                    self._improve(frozenset(kept))
+                if self.open_pair(kept, thorough=False) is None:
+                    self.improve(frozenset(kept))
                 else:
                     kept.add(a)
             if best is None or self.cost(kept) < self.cost(best):

@@ -79,6 +79,7 @@ class Master:
         self._sides: dict[Side, Any] = {}
         self._freed: dict[Side, Any] = {}
         self._slow: dict[Part, Any] = {}
+        self._starts: list[tuple[Any, int | None]] = []
         self._into: dict[int, list[tuple[int, int]]] = defaultdict(list)
         for a, item in enumerate(actions.items):
             for tail, head in item.arcs:
@@ -115,9 +116,11 @@ class Master:
             self._slow[part] = self._model.new_bool_var("")
             for U in starts_of(self._heard):
                 self._model.add(self._worth(Side(part, 0, U)) >= part.s * self._slow[part])
-        outer = [x for item, x in zip(self._actions.items, self._x, strict=True) if not _lies_inside(item.ends, cover)]
+        outer = [a for a, item in enumerate(self._actions.items) if not _lies_inside(item.ends, cover)]
         missing = lacking(cover, self._n, part.r)
-        self._model.add(sum(outer) >= missing * (1 - self._slow[part]))
+        self._model.add(sum(self._x[a] for a in outer) >= missing * (1 - self._slow[part]))
+        costs = sorted(self._actions.items[a].cost for a in outer)
+        self._starts.append((self._slow[part], sum(costs[:missing]) if missing <= len(costs) else None))
 
     def solve(
         self,
@@ -138,6 +141,11 @@ class Master:
         most = self._dearest if within is None else min(within, self._dearest)
         if self._ceiling is not None:
             self._ceiling.proto.linear.domain[1] = most
+        for slow, _ in self._starts:
+            slow.proto.domain[0] = 0
+        for slow, least in self._starts:
+            if least is None or least > most:
+                slow.proto.domain[0] = 1
         if not any_choice:
             self._model.minimize(self._cost)
         if hint is not None:
@@ -186,9 +194,12 @@ class Master:
                 self._relax(members, worth)
             else:
                 worth, full = self._model.new_int_var(0, s, ""), self._model.new_bool_var("")
-                for each in met:
-                    self._model.add_implication(full, each)
-                self._model.add(worth <= sum(met) + s * full)
+                if len(met) < s:
+                    for each in met:
+                        self._model.add_implication(full, each)
+                    self._model.add(worth <= sum(met) + s * full)
+                else:
+                    self._model.add(worth <= sum(met))
             self._sides[side] = worth
         return self._sides[side]
 

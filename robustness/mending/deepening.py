@@ -1,0 +1,166 @@
+r"""The bound raised step by step: is there a choice that costs no more than what is proven so far?
+
+A tree search (:mod:`robustness.mending.choice_search`) over the demands known so far looks for a choice within a budget
+that is the bound itself (iterative deepening: Korf 1985). Where there is none, the bound rises to the least that was
+given up; a choice that meets all demands is either the cheapest, or has a violation, which is one demand more.
+
+Within a budget t demands are stronger. By the lemma on spreading (:mod:`robustness.mending.covers`) a set U either is
+worth s, or takes everything in at the price of so many links outside a cover; when these cost more than t, U alone has
+to be worth s, whatever the other side does. A choice that evades this costs at least that price: the bound rises no
+further than to the least of them.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robustness import kernels
+from robustness.errors import Undecided
+from robustness.mending.choice_search import MOST_LEVELS, MOST_NODES, ChoiceSearch
+from robustness.mending.covers import Cover, cover_around, lacking
+from robustness.mending.demands import Side, worth
+from robustness.mending.goal import Part
+
+if TYPE_CHECKING:
+    from robustness.mending.hitting_set import Search
+
+__all__ = ["Deepening"]
+
+#: Nodes of the tree in a round, and by which factor more in the next one: counted, so that every machine does the same.
+_LOOKS, _GROWTH = 400_000, 1.4
+
+#: The clock is looked at after so many nodes; plain Python takes as long for one in a hundred.
+_SLICE, _PLAIN = 20_000, 100
+
+#: Larger sets take in much for little.
+_LARGEST = 10
+
+#: One side alone has to be worth s when there is no other.
+Demand = tuple[Side, Side | None]
+
+
+class Deepening:
+    """The tree search of a question, and what was learnt for it."""
+
+    def __init__(self, search: Search) -> None:
+        self._search = search
+        self._tree: ChoiceSearch | None = None
+        self._budget = -1
+        self._known: set[Demand] = set()
+        self._rows_seen = 0
+        self._evading: int | None = None
+        self._around: dict[tuple[Part, int], tuple[Cover, int | None]] = {}
+        self._looks = float(_LOOKS)
+        self._costs = [item.cost for item in search.actions.items]
+        n = search.graph.n
+        everybody = (1 << n) - 1
+        for part in search.parts:
+            if part.trap is None:
+                for i in range(n):
+                    search.learn(Side(part, 0, 1 << i), Side(part, 0, everybody & ~(1 << i)))
+
+    @classmethod
+    def of(cls, search: Search) -> Deepening | None:
+        """Return the tree search of a question, where it can be had: on 64 nodes and links that all cost something."""
+        costs = [item.cost for item in search.actions.items]
+        is_fit = 2 <= search.graph.n <= MOST_NODES and bool(costs) and min(costs) > 0
+        return cls(search) if is_fit else None
+
+    def go_on(self) -> None:
+        """Search for so many nodes; raise the bound, or find the cheapest choice, where it comes to that."""
+        search = self._search
+        scale = 1 if kernels.IS_COMPILED else _PLAIN
+        left = int(self._looks) // scale
+        self._looks *= _GROWTH
+        while left > 0 and not search.is_done:
+            if search.limits.expired():
+                raise Undecided("the limit came during the tree search")
+            tree = self._current()
+            if tree is None:
+                return
+            before = tree.nodes
+            is_over, chosen = tree.run(min(left, _SLICE // scale))
+            left -= max(1, tree.nodes - before)
+            if is_over:
+                prices = [price for price in (tree.beyond, self._evading) if price is not None]
+                self._rise(min(prices, default=None))
+            elif chosen is not None:
+                self._examine(chosen)
+
+    def _rise(self, beyond: int | None) -> None:
+        search = self._search
+        if search.best is not None:
+            most = search.cost(search.best)
+            search.raise_bound(most if beyond is None else min(beyond, most))
+        elif beyond is None or (search.actions.budget is not None and beyond > search.actions.budget):
+            search.rule_out()
+        else:
+            search.raise_bound(beyond)
+
+    def _examine(self, chosen: frozenset[int]) -> None:
+        search = self._search
+        pair = search.open_pair(chosen)
+        if pair is None:
+            search.improve(chosen)
+            search.raise_bound(search.cost(chosen))
+            return
+        heard = search.heard(chosen)
+        self._take([pair])
+        for part in search.parts:
+            if part.trap is None:
+                self._take((side, None) for side in search.sides(part) if worth(side, heard) < part.s)
+
+    def _current(self) -> ChoiceSearch | None:
+        """Return the tree for the bound as it is, with all demands; None where it would be too deep."""
+        search = self._search
+        if self._budget != search.bound or self._tree is None:
+            if search.bound // min(self._costs) >= MOST_LEVELS:
+                return None
+            self._budget, self._known, self._rows_seen, self._evading = search.bound, set(), 0, None
+            self._tree = ChoiceSearch(search.base, search.actions, self._budget)
+            for part in search.parts:
+                if part.trap is None:
+                    self._take((side, None) for side in search.sides(part))
+        if self._rows_seen < len(search.rows):
+            new = search.rows[self._rows_seen :]
+            self._rows_seen = len(search.rows)
+            self._take(new)
+        return self._tree
+
+    def _take(self, demands: object) -> None:
+        """Add demands to the tree, each in its strongest form within the budget."""
+        fresh: list[Demand] = []
+        for first, second in demands:  # type: ignore[attr-defined]
+            alone = [side for side in (first, second) if side is not None and self._stands_alone(side)]
+            strong: list[Demand] = [(side, None) for side in alone]
+            if not strong and second is not None:
+                strong = [(first, second)]
+            fresh += [each for each in strong if each not in self._known]
+            self._known.update(strong)
+        if self._tree is not None and fresh:
+            self._tree.add(dict.fromkeys(fresh))
+
+    def _stands_alone(self, side: Side) -> bool:
+        """Return whether a side has to be worth s in every choice within the budget."""
+        part, U, search = side.part, side.S, self._search
+        if part.trap is not None or not part.r <= U.bit_count() <= _LARGEST or worth(side, search.base) >= part.s:
+            return False
+        if (part, U) not in self._around:
+            cover = cover_around(search.base, U, part.r)
+            missing = max(0, lacking(cover, search.graph.n, part.r))
+            outer = sorted(
+                item.cost for item in search.actions.items if not any(self._inside(item.ends, V) for V in cover)
+            )
+            self._around[part, U] = cover, sum(outer[:missing]) if missing <= len(outer) else None
+        cover, least = self._around[part, U]
+        if least is not None and least <= self._budget:
+            return False
+        if least is not None:
+            self._evading = least if self._evading is None else min(self._evading, least)
+        if (part, U, cover) not in search.starts:
+            search.starts.append((part, U, cover))
+        return True
+
+    @staticmethod
+    def _inside(ends: tuple[int, int], V: int) -> bool:
+        return bool(V >> ends[0] & 1 and V >> ends[1] & 1)
