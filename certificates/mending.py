@@ -9,8 +9,9 @@ cost what is claimed, and make the network reach every part: by one certificate 
 And that every pair is a violation of a part in the graph as it is. By the lemma on choices in
 docs/certificate-format.md it is then one after every choice that has none of the actions which bring it an arc.
 
-A *cover* is a family of sets of nodes such that every arc of the graph lies inside one. What it demands of a choice
-that reaches (2,s)-robustness is the lemma on spreading there; only that it is a cover is checked.
+A *cover* is a family of sets of nodes such that every arc of the graph lies inside one; its *starts* lie inside one
+each. What they demand of a choice that reaches (r,s)-robustness is the lemma on spreading there; only that it is a
+cover with its starts is checked.
 
 That no cheaper choice breaks all of these violations, and does what the covers demand, is no business of the kernel: it
 is a problem in integers that the certificate holds whole, for any solver.
@@ -33,7 +34,7 @@ from certificates.verification import verify
 
 __all__ = ["FORMAT", "MAX_LOOKS", "VerifiedMendingClaim", "verify_mending"]
 
-FORMAT = "robustness/mending-certificate/1"
+FORMAT = "robustness/mending-certificate/2"
 
 #: Pairs times nodes and arcs of the graph, and covers times nodes: at most so many are looked at.
 MAX_LOOKS = 2**32
@@ -186,26 +187,31 @@ def _check_pair(graph: CanonicalGraph, parts: list[Part], pair: Any) -> None:
 
 
 def _check_covers(graph: CanonicalGraph, parts: list[Part], covers: list[Any]) -> None:
-    """Each is about a part with r = 2, and every arc of the graph as it is lies inside one of its sets."""
+    """Each is about (r,s)-robustness, and its starts and every arc of the graph as it is lie inside one of its sets."""
     masks: list[int] = []
     looks = graph.arc_count * (1 + graph.n // 1024)
     for cover in covers:
-        if not isinstance(cover, list) or not cover or type(cover[0]) is not int or not 0 <= cover[0] < len(parts):
-            raise MalformedCertificate("a cover is [part, V, ...]")
-        if parts[cover[0]].get("r") != 2:
-            raise MalformedCertificate("a cover belongs to a part with r = 2")
-        sets = [id_set(ids, graph.n, "a set of a cover") for ids in cover[1:]]
-        looks += (graph.n + sum(map(len, sets))) * (1 + graph.n // 1024)
+        if not isinstance(cover, list) or len(cover) < 2 or type(cover[0]) is not int or not 0 <= cover[0] < len(parts):
+            raise MalformedCertificate("a cover is [part, [start, ...], V, ...]")
+        if "r" not in parts[cover[0]]:
+            raise MalformedCertificate("a cover belongs to a part that is (r,s)-robust")
+        starts = [id_set(ids, graph.n, "a start of a cover") for ids in _list(cover[1], "the starts of a cover")]
+        sets = [id_set(ids, graph.n, "a set of a cover") for ids in cover[2:]]
+        looks += (graph.n + sum(map(len, sets)) + len(starts) * (1 + len(sets))) * (1 + graph.n // 1024)
         if looks > MAX_LOOKS:
             raise MalformedCertificate(f"the covers take more than {MAX_LOOKS} looks at nodes")
         masks = masks or [sum(1 << j for j in heard) for heard in graph.hears]
-        inside = [0] * graph.n
+        inside, wholes = [0] * graph.n, []
         for V in sets:
             if len(V) < 2:
                 raise MalformedCertificate("a set of a cover has two nodes or more")
             mask = sum(1 << i for i in V)
+            wholes.append(mask)
             for i in V:
                 inside[i] |= mask
+        for start in starts:
+            if not start or not any(all(mask >> i & 1 for i in start) for mask in wholes):
+                raise RejectedCertificate("a start of a cover has nodes, and lies inside one of its sets")
         if any(heard & ~near for heard, near in zip(masks, inside, strict=True)):
             raise RejectedCertificate("an arc lies inside no set of a cover")
 

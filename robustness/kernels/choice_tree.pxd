@@ -7,19 +7,16 @@ cdef number _NEVER
 cdef class ChoiceTree:
     cdef const int[:, ::1] into, arcs
     cdef const long long[::1] cost
-    cdef word[:, ::1] heard, usable, scratch, supports
+    cdef word[:, ::1] heard, usable, supports
     cdef int[:, ::1] options, opened
     cdef long long[:, ::1] picked
     cdef long long[::1] spent, room, forced, opened_count, tally, lacks, at_least, sizes
     cdef long long[:, ::1] rows
     cdef long long[::1] unit_node, unit_enough
-    cdef word[::1] unit_outside
+    cdef word[::1] unit_outside, counted, served
     cdef number n, budget, both, cheapest, need, largest, forced_total
     cdef public number beyond, nodes, level
     cdef bint is_new, alike
-
-    @cython.locals(a=number)
-    cdef bint _any_pair(self)
 
     @cython.locals(unit=number)
     cpdef void with_rows(self, rows, units, opened, opened_count, plan, supports)

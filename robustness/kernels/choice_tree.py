@@ -1,4 +1,4 @@
-"""The inner loop of :mod:`robustness.mending.choice_search`: a tree of choices of links that meet all rows known so far.
+"""The inner loop of :mod:`robustness.mending.choice_search`: a tree of choices of links that meet all known rows.
 
 A *row* is a demand on the links that are added (:mod:`robustness.mending.demands`): its units, in three groups A, B, C.
 It is met when the worths of A and B add up to ``s``, or a unit of C is met; the worth of a group is the number of its
@@ -36,28 +36,61 @@ class ChoiceTree:
 
     Parameters
     ----------
-    links : (into, cost, arcs, alike)
-        ``into[i, j]`` is the link that brings the arc j -> i, or -1, int32, shape (n, n); ``cost`` int64, shape (a,);
-        ``arcs`` int32, shape (a, 4): tail and head of a link's arcs, -1 for one it does not bring; ``alike``: whether
-        nodes that nothing in the network tells apart can be swapped, costs and caps included.
+    links : (into, cost, arcs, both, alike)
+        ``both``: how many arcs a link brings at most; ``alike``: whether nodes that nothing in the network tells apart
+        can be swapped, costs and caps included.
     budget : int
         A choice may cost so much.
     state : (heard, usable, options, picked, spent)
-        One row for every level: ``heard`` and ``usable`` uint64, shape (levels, n): whom a node hears, and whom it
-        could; ``options`` int32, shape (levels, a); ``picked`` int64, shape (levels, 2): how many options there are and
-        how many were tried; ``spent`` int64, shape (levels,). The rows of level 0 of heard and usable are filled in.
+        The rows of level 0 of ``heard`` and ``usable``, and the first of ``spent``, are filled in.
+    room, counted, served, forced, tally
+        As below.
+
+    Attributes
+    ----------
+    into : array of int32, shape (n, n)
+        ``into[i, j]`` is the link that brings the arc j -> i, or -1.
+    cost : array of int64, shape (links,)
+    arcs : array of int32, shape (links, 4)
+        Tail and head of each arc of a link, -1 for one that it does not bring.
+    heard, usable : arrays of uint64, shape (levels, n)
+        Whom a node hears at every level of the tree, and whom it could hear by links that are not excluded.
+    options : array of int32, shape (levels, links)
+        The links of which one has to be chosen there.
+    picked : array of int64, shape (levels, 2)
+        How many options there are, and how many were tried.
+    spent : array of int64, shape (levels,)
+        What the chosen links cost.
     room : array of int64, shape (n,)
         How many in-neighbours every node may gain.
-    scratch : array of uint64, shape (3, n)
+    counted, served : arrays of uint64, shape (n,)
+        The arcs that rows counted before use, and those of the options.
     forced : array of int64, shape (n,)
+        How many more in-neighbours a node needs whatever is chosen.
+    tally : array of int64, shape (n + 1,)
+        Units of a row by what they miss; 0 outside :meth:`_weigh`.
+    rows : array of int64, shape (rows, 7)
+        Where the units of A begin, those of B, those of C, and where they end; s; whether all of A, and all of B, can
+        be met.
+    unit_node, unit_enough : arrays of int64, shape (units,)
+    unit_outside : array of uint64, shape (units,)
+        A unit is met when its node hears so many of those outside.
+    opened : array of int32, shape (levels, rows)
+        The rows that are open at every level.
+    opened_count : array of int64, shape (levels,)
+        How many these are.
+    lacks, at_least, sizes : arrays of int64, shape (rows,)
+        Of the open rows of one level: how many units each lacks, how many links it takes at least, and how many can
+        serve it.
+    supports : array of uint64, shape (rows, n)
+        Those that can serve it, as arcs.
     """
 
-    def __init__(self, links, budget, state, room, scratch, forced, tally):
-        self.into, self.cost, self.arcs, self.alike = links
+    def __init__(self, links, budget, state, room, counted, served, forced, tally):
+        self.into, self.cost, self.arcs, self.both, self.alike = links
         self.heard, self.usable, self.options, self.picked, self.spent = state
-        self.room, self.scratch, self.forced, self.tally = room, scratch, forced, tally
+        self.room, self.counted, self.served, self.forced, self.tally = room, counted, served, forced, tally
         self.n, self.budget = self.into.shape[0], budget
-        self.both = 2 if self.cost.shape[0] and self._any_pair() else 1
         self.cheapest = _NEVER
         for a in range(self.cost.shape[0]):
             self.cheapest = min(self.cheapest, self.cost[a])
@@ -66,25 +99,8 @@ class ChoiceTree:
         self.level, self.is_new = 0, True
         self.need, self.largest, self.forced_total = 0, 0, 0
 
-    def _any_pair(self):
-        for a in range(self.cost.shape[0]):
-            if self.arcs[a, 0] >= 0 and self.arcs[a, 2] >= 0:
-                return True
-        return False
-
     def with_rows(self, rows, units, opened, opened_count, plan, supports):
-        """Take the arrays of the rows, which may have grown.
-
-        Parameters
-        ----------
-        rows : array of int64, shape (rows, 7)
-            Where the units of A begin, those of B, those of C, and where they end; s; whether all of A, and all of B,
-            can be met.
-        units : (node, outside, enough)
-            int64, uint64, int64, shape (units,).
-        opened : array of int32, shape (levels, rows)
-            The rows that were open at each level; ``opened_count`` int64, shape (levels,), of them.
-        """
+        """Take the arrays of the rows, which may have grown; ``units`` and ``plan`` are three each."""
         self.rows = rows
         self.unit_node, self.unit_outside, self.unit_enough = units
         self.opened, self.opened_count = opened, opened_count
@@ -218,17 +234,17 @@ class ChoiceTree:
         return (self.budget - self.spent[level]) // max(self.cheapest, 1)
 
     def _narrow(self, level, row, lacks, found):
-        """Where one link is left: narrow ``scratch[2]`` to those that can serve this row too; False when none can."""
+        """Where one link is left: narrow ``served`` to those that can serve this row too; False when none can."""
         links = self._weigh(level, row, lacks, 0)
         some = 0
         if links < 2:
             self._mirror(0)
             for j in range(self.n):
                 if found:
-                    self.scratch[2, j] &= self.supports[0, j]
+                    self.served[j] &= self.supports[0, j]
                 else:
-                    self.scratch[2, j] = self.supports[0, j]
-                some |= self.scratch[2, j]
+                    self.served[j] = self.supports[0, j]
+                some |= self.served[j]
         if some or links == _NEVER:
             return some != 0
         self._give_up(self.spent[level] + 2 * self.cheapest)
@@ -265,7 +281,7 @@ class ChoiceTree:
     def _weigh_all(self, level, left):
         """Find what is forced, and who can serve what is served by fewest; return that row, or -1, or -2 to give up.
 
-        -1 stands for a node all of whose options are in ``scratch[2]``. ``forced`` and ``forced_total``: how many more
+        -1 stands for a node all of whose options are in ``served``. ``forced`` and ``forced_total``: how many more
         in-neighbours a node needs whatever is chosen.
         """
         best, chosen = _NEVER, -1
@@ -293,13 +309,13 @@ class ChoiceTree:
                         if size < best:
                             best, chosen = size, -1
                             for j in range(self.n):
-                                self.scratch[2, j] = 0
-                            self.scratch[2, i] = supply
+                                self.served[j] = 0
+                            self.served[i] = supply
             self.sizes[k] = self._mirror(k)
             if not self.need and self.sizes[k] < best:
                 best, chosen = self.sizes[k], row
                 for j in range(self.n):
-                    self.scratch[2, j] = self.supports[k, j]
+                    self.served[j] = self.supports[k, j]
         return chosen
 
     def _tighten(self, level, left):
@@ -334,16 +350,15 @@ class ChoiceTree:
             return False
         if (self.usable[level, u] ^ self.usable[level, v]) & others:
             return False
-        if (self.heard[level, u] >> v ^ self.heard[level, v] >> u) & 1:
+        if count(self.heard[level, u] & bit_of(v)) != count(self.heard[level, v] & bit_of(u)):
             return False
-        if (self.usable[level, u] >> v ^ self.usable[level, v] >> u) & 1:
+        if count(self.usable[level, u] & bit_of(v)) != count(self.usable[level, v] & bit_of(u)):
             return False
         for i in range(self.n):
-            if i != u and i != v:  # noqa: PLR1714 - a tuple would be a Python object
-                if (self.heard[level, i] >> u ^ self.heard[level, i] >> v) & 1:
-                    return False
-                if (self.usable[level, i] >> u ^ self.usable[level, i] >> v) & 1:
-                    return False
+            if not count(bit_of(i) & others):
+                continue
+            if count(self.heard[level, i] & ~others) == 1 or count(self.usable[level, i] & ~others) == 1:
+                return False
         return True
 
     def _is_like_another(self, level, link, found):
@@ -378,9 +393,9 @@ class ChoiceTree:
             # What was excluded here would cost more.
             self._give_up(self.budget + 1)
         for i in range(self.n):
-            self.scratch[1, i] = 0
-        # Then rows that no link serves which the count above may hold, and none which another of them counts: small ones
-        # first.
+            self.counted[i] = 0
+        # Then rows that no link serves which the count above may hold, and none which another of them counts: small
+        # ones first.
         if 1 < left and at_least <= left:
             for small in range(4):
                 for k in range(self.opened_count[level]):
@@ -388,13 +403,13 @@ class ChoiceTree:
                         continue
                     apart = True
                     for i in range(self.n):
-                        if self.supports[k, i] and (self.forced[i] or self.supports[k, i] & self.scratch[1, i]):
+                        if self.supports[k, i] and (self.forced[i] or self.supports[k, i] & self.counted[i]):
                             apart = False
                             break
                     if apart:
                         at_least += self.at_least[k]
                         for i in range(self.n):
-                            self.scratch[1, i] |= self.supports[k, i]
+                            self.counted[i] |= self.supports[k, i]
                         if at_least > left:
                             break
         if at_least > left:
@@ -402,14 +417,14 @@ class ChoiceTree:
             return False
         found = 0
         for i in range(self.n):
-            rest = self.scratch[2, i]
+            rest = self.served[i]
             while rest:
                 j = first(rest)
                 rest &= rest - 1
                 link = self.into[i, j]
                 if link < 0:
                     continue
-                if chosen >= 0 and self.both == 2 and i < j and self.scratch[2, j] >> i & 1 and self.into[j, i] == link:
+                if chosen >= 0 and self.both == 2 and i < j and self.served[j] & bit_of(i) and self.into[j, i] == link:
                     continue
                 if self.spent[level] + self.cost[link] > self.budget:
                     self._give_up(self.spent[level] + self.cost[link])

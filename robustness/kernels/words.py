@@ -26,4 +26,4 @@ def first(word: Any) -> int:
 
 def bit_of(node: int) -> Any:
     """Return the word with the one bit that ``node`` has in its word."""
-    return np.uint64(1 << (node & 63))
+    return np.uint64(1 << (int(node) & 63))

@@ -107,8 +107,8 @@ def _encoded(problem: Problem, proofs: list[bytes]) -> bytes:
             for part, sets in problem.pairs
         ],
         "covers": [
-            [problem.parts.index(part), *sorted(sorted(bits(V)) for V in cover)]
-            for part, cover in problem.covers
+            [problem.parts.index(part), [sorted(bits(U)) for U in starts], *sorted(sorted(bits(V)) for V in cover)]
+            for part, starts, cover in problem.covers
         ],
         "lengths": [len(proof) for proof in proofs],
     }  # fmt: skip

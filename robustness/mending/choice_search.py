@@ -75,11 +75,18 @@ class ChoiceSearch:
         spents[0] = spent
         self._reachable = [base[i] | usable[i] for i in range(n)]
         self._tree = ChoiceTree(
-            (into, costs, arcs, actions.most is None and len(set(costs.tolist())) <= 1),
+            (
+                into,
+                costs,
+                arcs,
+                max((len(item.arcs) for item in actions.items), default=1),
+                actions.most is None and len(set(costs.tolist())) <= 1,
+            ),
             budget,
             (self._heard, self._usable, self._options, self._picked, spents),
             np.array(room, dtype=np.int64),
-            np.zeros((3, n), dtype=np.uint64),
+            np.zeros(n, dtype=np.uint64),
+            np.zeros(n, dtype=np.uint64),
             np.zeros(n, dtype=np.int64),
             np.zeros(n + 1, dtype=np.int64),
         )
@@ -88,6 +95,7 @@ class ChoiceSearch:
         self._opened = np.zeros((levels, 64), dtype=np.int32)
         self._opened_count = np.zeros(levels, dtype=np.int64)
         self._row_count = self._unit_count = 0
+        self._show_rows()
 
     @property
     def nodes(self) -> int:
@@ -96,7 +104,7 @@ class ChoiceSearch:
 
     @property
     def beyond(self) -> int | None:
-        """No choice that was given up costs less; at the end no choice does that meets all demands. None: there is none."""
+        """No choice that was given up costs less; at the end none that meets all demands does. None: there is none."""
         least = int(self._tree.beyond)
         return None if least == _NEVER else least
 
@@ -106,9 +114,7 @@ class ChoiceSearch:
         for first, second in demands:
             self._append(first, second)
         if self._row_count > begin:
-            plan = np.zeros((3, len(self._rows)), dtype=np.int64)
-            supports = np.zeros((len(self._rows), self._n), dtype=np.uint64)
-            self._tree.with_rows(self._rows, self._units, self._opened, self._opened_count, plan, supports)
+            self._show_rows()
             self._tree.added(begin, self._row_count)
 
     def run(self, nodes: int) -> tuple[bool, frozenset[int] | None]:
@@ -121,6 +127,11 @@ class ChoiceSearch:
             return status == 0, None
         levels = range(self._tree.level)
         return False, self._actions.required | {int(self._options[k, self._picked[k, 1] - 1]) for k in levels}
+
+    def _show_rows(self) -> None:
+        plan = np.zeros((3, len(self._rows)), dtype=np.int64)
+        supports = np.zeros((len(self._rows), self._n), dtype=np.uint64)
+        self._tree.with_rows(self._rows, self._units, self._opened, self._opened_count, plan, supports)
 
     def _append(self, first: Side, second: Side | None) -> None:
         row, place = self._row_count, self._unit_count

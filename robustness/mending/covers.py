@@ -30,7 +30,7 @@ from collections.abc import Iterable, Sequence
 
 from robustness.mending.demands import bits
 
-__all__ = ["Cover", "lacking", "cover_around", "rigid_components", "room", "starts_of"]
+__all__ = ["Cover", "cover_around", "lacking", "rigid_components", "room", "starts_of"]
 
 #: A family of sets, as masks.
 Cover = tuple[int, ...]

@@ -49,6 +49,7 @@ class Deepening:
         self._known: set[Demand] = set()
         self._rows_seen = 0
         self._evading: int | None = None
+        self._told: set[tuple[Part, int]] = set()
         self._around: dict[tuple[Part, int], tuple[Cover, int | None]] = {}
         self._looks = float(_LOOKS)
         self._costs = [item.cost for item in search.actions.items]
@@ -157,8 +158,9 @@ class Deepening:
             return False
         if least is not None:
             self._evading = least if self._evading is None else min(self._evading, least)
-        if (part, U, cover) not in search.starts:
-            search.starts.append((part, U, cover))
+        if (part, U) not in self._told:
+            self._told.add((part, U))
+            search.covers.append((part, (U,), cover))
         return True
 
     @staticmethod

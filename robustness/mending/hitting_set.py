@@ -6,8 +6,8 @@ network reaches the goal, and gives up what is superfluous. Every violation met 
 under the proposal, since the proposal lies inside the repaired choice. The proposal's cost is a lower bound, the
 repaired choice an upper one; both improve until they meet. Once a choice is known, the master is mostly asked for any
 choice that costs less and meets all demands: that is quicker than to minimise, its violations are harder to evade, and
-when there is none, the best is optimal. Between rounds the best is taken apart a little and repaired in another way, and
-a tree search (:mod:`robustness.mending.deepening`) goes on that raises the bound step by step.
+when there is none, the best is optimal. Between rounds the best is taken apart a little and repaired in another way,
+and a tree search (:mod:`robustness.mending.deepening`) goes on that raises the bound step by step.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from robustness.errors import InternalError, Undecided
 from robustness.limits import Limits, Progress
 from robustness.mending.actions import Actions
 from robustness.mending.construction import grown_choices
-from robustness.mending.covers import Cover, lacking, rigid_components
+from robustness.mending.covers import Cover, lacking, rigid_components, starts_of
 from robustness.mending.deepening import Deepening
 from robustness.mending.demands import (
     Side,
@@ -97,10 +97,9 @@ class Search:
         What no choice can break; then the goal is out of reach.
     rows : list of pairs of sides
         The demands that the master problem holds.
-    covers : list of (Part, Cover)
-        The covers behind its other rows (:mod:`robustness.mending.covers`).
-    starts : list of (Part, int, Cover)
-        Sets of nodes with a cover around each, behind the rest of them.
+    covers : list of (Part, starts, Cover)
+        The covers behind its other rows, and those behind the demands of the tree search
+        (:mod:`robustness.mending.covers`).
     """
 
     graph: Digraph
@@ -115,8 +114,7 @@ class Search:
     is_impossible: bool = False
     reason: str = ""
     rows: list[Pair] = field(default_factory=list)
-    covers: list[tuple[Part, Cover]] = field(default_factory=list)
-    starts: list[tuple[Part, int, Cover]] = field(default_factory=list)
+    covers: list[tuple[Part, tuple[int, ...], Cover]] = field(default_factory=list)
     base: list[int] = field(default_factory=list)
     _seen: set[Pair] = field(default_factory=set)
     _pool: dict[tuple[Part, int], dict[int, Side]] = field(default_factory=dict)
@@ -183,10 +181,13 @@ class Search:
         # A bound before the first repair, which can take long; counted, so that it is the same on every machine.
         self._believe(self._master.solve(self.limits.share(0.5), None, _FIRST_EFFORT))
         self._tell()
-        if not self.is_done and self._deepening is not None:
-            self._deepening.go_on()
+        self._deepen()
         if not self.is_done:
             self.improve(self._repair(grown[0] if grown else self.actions.required, 0))
+
+    def _deepen(self) -> None:
+        if self._deepening is not None and not self.is_done:
+            self._deepening.go_on()
 
     def _is_enough(self, chosen: Iterable[int], limits: Limits) -> bool:
         """Return whether a choice is found to reach the goal, by the exact search alone and within these limits."""
@@ -227,8 +228,7 @@ class Search:
                 self.bound = max(self.bound, self.cost(proposal.chosen))
         if not self.is_done and self.best is not None:
             self.improve(self._shaken(self.best, turn))
-        if not self.is_done and self._deepening is not None:
-            self._deepening.go_on()
+        self._deepen()
         if not self.is_done and self.limits.expired():
             raise Undecided("the limit came before the bounds met")
 
@@ -293,8 +293,9 @@ class Search:
             if part.trap is None and part.r == 2 and self._master is not None:
                 cover = rigid_components(heard)
                 self._in_time()
-                if lacking(cover, len(heard), part.r) > 0 and (part, cover) not in self.covers:
-                    self.covers.append((part, cover))
+                row = part, tuple(starts_of(self.base)), cover
+                if lacking(cover, len(heard), part.r) > 0 and row not in self.covers:
+                    self.covers.append(row)
                     self._master.add_cover(part, cover)
 
     def _take(self, side: Side, heard: Sequence[int]) -> None:

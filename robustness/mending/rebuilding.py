@@ -9,8 +9,8 @@ states it: over ``x_a`` (a link is chosen), ``y_iO`` (node i hears enough of the
     f_S <= y_iO                                                                  every normal i of S
     sum over both sides of y, and of s f_S        >=  s                          (r,s)-robustness
     sum over both sides of y, and of z            >=  1                          traps and violations
-    sum over both nodes of y, and of s f_S        >=  s z                         every two linked nodes S = {u, v}
-    sum of the links inside no set of a cover     >=  what it lacks (1 - z)       every cover; one z for each part
+    sum over S of y, and of s f_S                 >=  s z                         every start S of a cover
+    sum of the links inside no set of a cover     >=  what it lacks (1 - z)       every cover; one z for the same starts
     caps and required links
 
 and, where every link that is not there can be added at one cost without constraints, for nodes u < v that hear and are
@@ -136,6 +136,10 @@ def subject_of(graph: Digraph, certificate_bytes: bytes) -> Digraph:
     return empty
 
 
+def _room(size: int, r: int) -> int:
+    return sum(min(r, before) for before in range(size))
+
+
 class _Rebuilt:
     """The master problem of a certificate that the kernel has verified."""
 
@@ -164,11 +168,12 @@ class _Rebuilt:
             self._order_twins()
         for k, *sets in document["pairs"]:
             self._break(document["claim"]["parts"][k], *map(frozenset, sets))
-        self._slow: dict[int, Any] = {}
-        for k, *sets in document["covers"]:
-            if k not in self._slow:
-                self._slow[k] = self._nothing_spreads(document["claim"]["parts"][k]["s"])
-            self._need_links_outside(sets, self._slow[k])
+        self._slow: dict[tuple[Any, ...], Any] = {}
+        for k, starts, *sets in document["covers"]:
+            part, key = document["claim"]["parts"][k], (k, *map(tuple, starts))
+            if key not in self._slow:
+                self._slow[key] = self._nothing_spreads(starts, part["r"], part["s"])
+            self._need_links_outside(sets, part["r"], self._slow[key])
 
     def _all_alike(self, actions: dict[str, Any]) -> bool:
         """Return whether every link that is not there can be added, all at one cost, without constraints."""
@@ -214,18 +219,19 @@ class _Rebuilt:
             self._model.add_linear_constraint(full <= each)
         return [*met, s * full]
 
-    def _nothing_spreads(self, s: int) -> Any:
-        """Return the variable that no two linked nodes take the whole network in: then they are worth s."""
+    def _nothing_spreads(self, starts: list[list[int]], r: int, s: int) -> Any:
+        """Return the variable that no start takes the whole network in: then each is worth s."""
         slow = self._model.add_binary_variable()
         everybody = frozenset(range(self._n))
-        for u, v in {(min(i, j), max(i, j)) for i, heard in enumerate(self._hears) for j in heard}:
-            self._model.add_linear_constraint(self._sum(self._worth((u, v), everybody - {u, v}, 2, s)) >= s * slow)
+        for start in starts:
+            worth = self._worth(start, everybody - set(start), r, s)
+            self._model.add_linear_constraint(self._sum(worth) >= s * slow)
         return slow
 
-    def _need_links_outside(self, cover: list[list[int]], slow: Any) -> None:
-        """Add the row of one cover: a set of m nodes has room for 2m - 3 arcs by which nodes are taken in."""
+    def _need_links_outside(self, cover: list[list[int]], r: int, slow: Any) -> None:
+        """Add the row of one cover: the k-th node of a set has room for min(r, k) arcs by which it is taken in."""
         sets = [frozenset(V) for V in cover]
-        lacking = 2 * self._n - 3 - sum(2 * len(V) - 3 for V in sets)
+        lacking = _room(self._n, r) - sum(_room(len(V), r) for V in sets)
         outer = (x for (u, v), x in zip(self._links, self._x, strict=True) if not any({u, v} <= V for V in sets))
         self._model.add_linear_constraint(self._sum(outer) >= lacking * (1 - slow))
 

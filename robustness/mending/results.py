@@ -62,8 +62,8 @@ class Problem:
         The lower bound in units of the actions' scale; None when no choice reaches the goal.
     pairs : tuple of (Part, Sets)
         Violations of ``graph``; the bound follows from them and from the covers.
-    covers : tuple of (Part, masks of nodes)
-        Covers of its links (:mod:`robustness.mending.covers`).
+    covers : tuple of (Part, starts, cover)
+        Covers of its links with their starts, all masks of nodes (:mod:`robustness.mending.covers`).
     """
 
     graph: Digraph
@@ -72,7 +72,7 @@ class Problem:
     chosen: frozenset[int] | None
     least: int | None
     pairs: tuple[tuple[Part, Sets], ...]
-    covers: tuple[tuple[Part, tuple[int, ...]], ...] = ()
+    covers: tuple[tuple[Part, tuple[int, ...], tuple[int, ...]], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, repr=False)

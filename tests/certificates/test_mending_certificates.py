@@ -105,18 +105,36 @@ def test_without_its_violations_a_bound_does_not_follow() -> None:
     assert found.verdict is LeastVerdict.REFUTED
 
 
-def test_covers_bear_the_bound_and_are_of_parts_with_r_2() -> None:
+def test_covers_bear_the_bound_and_are_of_robust_parts() -> None:
     """With its covers alone, that of the path shows what (2,2) needs; a cover with less room in it proves less."""
     subject, alone = PATH.canonical_bytes(), changed(made(), put("pairs", value=[]))
     assert verify_mending(subject, made()).covers > 0
     assert "covers" in str(verify_mending(subject, made()))
     assert json.loads(made().partition(b"\n")[0])["covers"][0][0] == 0
-    wide = changed(alone, put("covers", value=[[0, [0, 1, 2, 3, 4]]]))
+    assert confirm_least(subject, alone).verdict is LeastVerdict.CONFIRMED
+    wide = changed(alone, put("covers", value=[[0, [], [0, 1, 2, 3, 4]]]))
     assert confirm_least(subject, wide).verdict is LeastVerdict.REFUTED
-    with pytest.raises(MalformedCertificate, match="r = 2"):
-        verify_mending(subject, changed(made(GOALS[2]), put("covers", value=[[0, [0, 1, 2, 3, 4]]])))
-    with pytest.raises(MalformedCertificate, match="r = 2"):
-        verify_mending(subject, changed(made(GOALS[4]), put("covers", value=[[0, [0, 1, 2, 3, 4]]])))
+    with pytest.raises(MalformedCertificate, match=r"\(r,s\)-robust"):
+        verify_mending(subject, changed(made(GOALS[4]), put("covers", value=[[0, [], [0, 1, 2, 3, 4]]])))
+
+
+def test_a_start_bears_no_more_than_its_lemma_says() -> None:
+    """For 3-robustness: a cover around three nodes of the path has room for 3 + 2 arcs, and 9 - 5 more are needed."""
+    subject = PATH.canonical_bytes()
+
+    def with_cover(starts: list[list[int]], *cover: list[int], least: int = 4) -> LeastVerdict:
+        document = changed(made(GOALS[2]), put("pairs", value=[]))
+        document = changed(document, put("covers", value=[[0, starts, *cover]]))
+        document = changed(document, put("claim", "least", value=least))
+        return confirm_least(subject, document).verdict
+
+    assert with_cover([[0, 1, 2]], [0, 1, 2], [2, 3], [3, 4]) is LeastVerdict.CONFIRMED
+    assert with_cover([[0, 1, 2]], [0, 1, 2], [2, 3], [3, 4], least=5) is LeastVerdict.REFUTED
+    assert with_cover([], [0, 1, 2], [2, 3], [3, 4]) is LeastVerdict.REFUTED
+    with pytest.raises(RejectedCertificate, match="lies inside one of its sets"):
+        with_cover([[0, 1, 3]], [0, 1, 2], [2, 3], [3, 4])
+    with pytest.raises(RejectedCertificate, match="has nodes"):
+        with_cover([[]], [0, 1, 2], [2, 3], [3, 4])
 
 
 def test_a_limit_leaves_the_bound_undecided() -> None:
@@ -181,7 +199,7 @@ def test_results_without_a_question() -> None:
 
 #: What is changed in an honest certificate, and what the kernel says.
 FORGERIES: list[tuple[Callable[[dict[str, Any]], object], type[CertificateError], str]] = [
-    (put("format", value="robustness/mending-certificate/2"), MalformedCertificate, "the format"),
+    (put("format", value="robustness/mending-certificate/1"), MalformedCertificate, "the format"),
     (put("graph", value="0" * 64), RejectedCertificate, "another graph"),
     (put("claim", "cost", value=1), RejectedCertificate, "least cost"),
     (put("claim", "cost", value=40), RejectedCertificate, "do not cost"),
@@ -221,10 +239,13 @@ FORGERIES: list[tuple[Callable[[dict[str, Any]], object], type[CertificateError]
     (put("pairs", 0, value=[0, [], [0], [0]]), RejectedCertificate, "disjoint"),
     (put("pairs", 0, value=[0, [], [1], [3]]), RejectedCertificate, "does not violate"),
     (put("covers", value=None), MalformedCertificate, "covers is a list"),
-    (put("covers", value=[[7, [0, 1, 2, 3, 4]]]), MalformedCertificate, "a cover is"),
-    (put("covers", value=[[0, [4]]]), MalformedCertificate, "two nodes or more"),
-    (put("covers", value=[[0, [0, 1], [1, 2], [2, 3]]]), RejectedCertificate, "inside no set of a cover"),
-    (put("covers", value=[[0, [1, 0]]]), MalformedCertificate, "a set of a cover"),
+    (put("covers", value=[[7, [], [0, 1, 2, 3, 4]]]), MalformedCertificate, "a cover is"),
+    (put("covers", value=[[0, [], [4]]]), MalformedCertificate, "two nodes or more"),
+    (put("covers", value=[[0, [], [0, 1], [1, 2], [2, 3]]]), RejectedCertificate, "inside no set of a cover"),
+    (put("covers", value=[[0, [], [1, 0]]]), MalformedCertificate, "a set of a cover"),
+    (put("covers", value=[[0, [[1, 0]], [0, 1]]]), MalformedCertificate, "a start of a cover"),
+    (put("covers", value=[[0, 1, [0, 1]]]), MalformedCertificate, "the starts of a cover"),
+    (put("covers", value=[[0]]), MalformedCertificate, "a cover is"),
     (put("lengths", value=[0]), MalformedCertificate, "lengths is a list"),
     (put("lengths", value=[1]), MalformedCertificate, "add up"),
     (put("lengths", value=None), MalformedCertificate, "lengths is a list"),

@@ -182,7 +182,7 @@ def test_what_malicious_nodes_can_do(
     assert outcome.exit_code == 0, outcome.output
 
 
-@pytest.mark.parametrize("form", ["robustness/joint-certificate/1", "robustness/mending-certificate/1"])
+@pytest.mark.parametrize("form", ["robustness/joint-certificate/1", "robustness/mending-certificate/2"])
 def test_a_format_that_it_does_not_know_is_told(form: str, tmp_path: Path) -> None:
     (tmp_path / "c.cert").write_bytes(json.dumps({"format": form}).encode() + b"\n")
     paths = [str(tmp_path / "wheel.json"), str(tmp_path / "c.cert")]

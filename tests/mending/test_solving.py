@@ -15,6 +15,7 @@ from robustness.limits import Limits
 from robustness.mending import MendVerdict, losses, master
 from robustness.mending.actions import actions_for
 from robustness.mending.covers import rigid_components
+from robustness.mending.deepening import Deepening
 from robustness.mending.goal import Part
 from robustness.solver_calls import Outcome
 
@@ -22,6 +23,7 @@ from robustness.solver_calls import Outcome
 @pytest.mark.parametrize("said", ["optimal", "infeasible", "abandoned"])
 def test_mending_never_ends_by_what_a_stopped_call_said(monkeypatch: pytest.MonkeyPatch, said: str) -> None:
     """Every call is stopped, whatever it says: nothing is impossible, and nothing optimal."""
+    monkeypatch.setattr(Deepening, "of", classmethod(lambda *_: None))
     monkeypatch.setattr(master, "solve_within", lambda *_, **__: Outcome(said))
     found = rb.mend(nx.path_graph(9), (2, 2), time_limit=1.0)
     assert found.verdict is MendVerdict.FEASIBLE
