@@ -1,4 +1,5 @@
 cimport cython
+from robustness.kernels.twins cimport is_like_another
 from robustness.kernels.words cimport SOURCES, bit_of, count, first, number, word
 
 cdef number _NEVER
@@ -60,12 +61,6 @@ cdef class ChoiceTree:
 
     @cython.locals(spare=number, everybody=word, changed=bint, i=number, before=word, after=word)
     cdef bint _tighten(self, number level, number left) noexcept nogil
-
-    @cython.locals(others=word, i=number)
-    cdef bint _are_twins(self, number level, number u, number v) noexcept nogil
-
-    @cython.locals(tail=number, head=number, k=number, other=number, u=number, v=number)
-    cdef bint _is_like_another(self, number level, number link, number found) noexcept nogil
 
     @cython.locals(
         left=number, at_least=number, i=number, j=number, k=number, small=number, chosen=number, apart=bint,

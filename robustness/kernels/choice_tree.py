@@ -23,6 +23,7 @@ except ImportError:
     from robustness.kernels import uncompiled as cython
 
 if not cython.compiled:
+    from robustness.kernels.twins import is_like_another
     from robustness.kernels.words import bit_of, count, first
 
 __all__ = ["ChoiceTree"]
@@ -40,12 +41,8 @@ class ChoiceTree:
         ``both``: how many arcs a link brings at most; ``alike``: whether nodes that nothing in the network tells apart
         can be swapped, costs and caps included.
     budget : int
-        A choice may cost so much.
     state : (heard, usable, options, picked, spent)
         The rows of level 0 of ``heard`` and ``usable``, and the first of ``spent``, are filled in.
-    room, counted, served, forced, tally
-        As below.
-
     Attributes
     ----------
     into : array of int32, shape (n, n)
@@ -94,7 +91,6 @@ class ChoiceTree:
         self.cheapest = _NEVER
         for a in range(self.cost.shape[0]):
             self.cheapest = min(self.cheapest, self.cost[a])
-        #: The least cost at which something was given up, and the nodes looked at.
         self.beyond, self.nodes = _NEVER, 0
         self.level, self.is_new = 0, True
         self.need, self.largest, self.forced_total = 0, 0, 0
@@ -343,42 +339,6 @@ class ChoiceTree:
                 changed = True
         return changed
 
-    def _are_twins(self, level, u, v):
-        """Return whether two nodes can be swapped: nothing that was there, was chosen or excluded tells them apart."""
-        others = ~(bit_of(u) | bit_of(v))
-        if (self.heard[level, u] ^ self.heard[level, v]) & others:
-            return False
-        if (self.usable[level, u] ^ self.usable[level, v]) & others:
-            return False
-        if count(self.heard[level, u] & bit_of(v)) != count(self.heard[level, v] & bit_of(u)):
-            return False
-        if count(self.usable[level, u] & bit_of(v)) != count(self.usable[level, v] & bit_of(u)):
-            return False
-        for i in range(self.n):
-            if not count(bit_of(i) & others):
-                continue
-            if count(self.heard[level, i] & ~others) == 1 or count(self.usable[level, i] & ~others) == 1:
-                return False
-        return True
-
-    def _is_like_another(self, level, link, found):
-        """Return whether swapping two nodes makes a link one of the options before it: then that one is enough."""
-        if not self.alike:
-            return False
-        tail, head = self.arcs[link, 0], self.arcs[link, 1]
-        for k in range(found):
-            other = self.options[level, k]
-            u, v = self.arcs[other, 0], self.arcs[other, 1]
-            if u == tail and v != head and self._are_twins(level, v, head):
-                return True
-            if v == head and u != tail and self._are_twins(level, u, tail):
-                return True
-            if self.both == 2 and u == head and v != tail and self._are_twins(level, v, tail):
-                return True
-            if self.both == 2 and v == tail and u != head and self._are_twins(level, u, head):
-                return True
-        return False
-
     def _plan(self, level):
         """Write the options of a level; return False when nothing within the budget can meet the rows."""
         left = self._links_left(level)
@@ -394,8 +354,7 @@ class ChoiceTree:
             self._give_up(self.budget + 1)
         for i in range(self.n):
             self.counted[i] = 0
-        # Then rows that no link serves which the count above may hold, and none which another of them counts: small
-        # ones first.
+        # Then rows that share no link with what was counted, small ones first.
         if 1 < left and at_least <= left:
             for small in range(4):
                 for k in range(self.opened_count[level]):
@@ -429,7 +388,9 @@ class ChoiceTree:
                 if self.spent[level] + self.cost[link] > self.budget:
                     self._give_up(self.spent[level] + self.cost[link])
                     continue
-                if self._is_like_another(level, link, found):
+                if self.alike and is_like_another(
+                    self.arcs, self.options[level], link, found, self.both, self.heard[level], self.usable[level]
+                ):
                     continue
                 self.options[level, found] = link
                 found += 1

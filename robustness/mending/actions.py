@@ -58,6 +58,11 @@ class Actions:
     one_way: bool = False
     budget: int | None = None
 
+    @property
+    def cheapest(self) -> int:
+        """What a link costs at least, in units of the scale; 0 when there is none."""
+        return min((item.cost for item in self.items), default=0)
+
     def price(self, units: int) -> int | float:
         """Return a cost as people write it."""
         value = Fraction(units, self.scale)

@@ -12,17 +12,18 @@ further than to the least of them.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
+from typing import Protocol
 
 from robustness import kernels
+from robustness.digraph import Digraph
 from robustness.errors import Undecided
+from robustness.limits import Limits
+from robustness.mending.actions import Actions
 from robustness.mending.choice_search import MOST_LEVELS, MOST_NODES, ChoiceSearch
 from robustness.mending.covers import Cover, cover_around, lacking
 from robustness.mending.demands import Side, worth
 from robustness.mending.goal import Part
-
-if TYPE_CHECKING:
-    from robustness.mending.hitting_set import Search
 
 __all__ = ["Deepening"]
 
@@ -39,10 +40,49 @@ _LARGEST = 10
 Demand = tuple[Side, Side | None]
 
 
+class Asked(Protocol):
+    """What the tree search needs of the search it is a part of (:class:`robustness.mending.hitting_set.Search`)."""
+
+    graph: Digraph
+    actions: Actions
+    parts: Sequence[Part]
+    limits: Limits
+    best: frozenset[int] | None
+    bound: int
+    rows: list[tuple[Side, Side]]
+    covers: list[tuple[Part, tuple[int, ...], Cover]]
+    base: list[int]
+
+    @property
+    def is_done(self) -> bool:
+        """Whether there is nothing more to find out."""
+
+    def cost(self, chosen: Iterable[int]) -> int:
+        """Return what a choice costs."""
+
+    def heard(self, chosen: Iterable[int]) -> list[int]:
+        """Return the in-neighbour masks of the network with a choice."""
+
+    def sides(self, part: Part) -> list[Side]:
+        """Return all sides of a part that were met, with no malicious set."""
+
+    def open_pair(self, chosen: Iterable[int]) -> tuple[Side, Side] | None:
+        """Return a demand that the choice does not meet, a new one where all known ones are met."""
+
+    def improve(self, chosen: frozenset[int] | None) -> None:
+        """Take in a choice that reaches the goal."""
+
+    def raise_bound(self, proven: int) -> None:
+        """No choice that reaches the goal costs less than this."""
+
+    def rule_out(self) -> None:
+        """No choice meets the demands."""
+
+
 class Deepening:
     """The tree search of a question, and what was learnt for it."""
 
-    def __init__(self, search: Search) -> None:
+    def __init__(self, search: Asked) -> None:
         self._search = search
         self._tree: ChoiceSearch | None = None
         self._budget = -1
@@ -52,19 +92,11 @@ class Deepening:
         self._told: set[tuple[Part, int]] = set()
         self._around: dict[tuple[Part, int], tuple[Cover, int | None]] = {}
         self._looks = float(_LOOKS)
-        self._costs = [item.cost for item in search.actions.items]
-        n = search.graph.n
-        everybody = (1 << n) - 1
-        for part in search.parts:
-            if part.trap is None:
-                for i in range(n):
-                    search.learn(Side(part, 0, 1 << i), Side(part, 0, everybody & ~(1 << i)))
 
     @classmethod
-    def of(cls, search: Search) -> Deepening | None:
+    def of(cls, search: Asked) -> Deepening | None:
         """Return the tree search of a question, where it can be had: on 64 nodes and links that all cost something."""
-        costs = [item.cost for item in search.actions.items]
-        is_fit = 2 <= search.graph.n <= MOST_NODES and bool(costs) and min(costs) > 0
+        is_fit = 2 <= search.graph.n <= MOST_NODES and search.actions.cheapest > 0
         return cls(search) if is_fit else None
 
     def go_on(self) -> None:
@@ -115,7 +147,7 @@ class Deepening:
         """Return the tree for the bound as it is, with all demands; None where it would be too deep."""
         search = self._search
         if self._budget != search.bound or self._tree is None:
-            if search.bound // min(self._costs) >= MOST_LEVELS:
+            if search.bound // search.actions.cheapest >= MOST_LEVELS:
                 return None
             self._budget, self._known, self._rows_seen, self._evading = search.bound, set(), 0, None
             self._tree = ChoiceSearch(search.base, search.actions, self._budget)
@@ -128,10 +160,10 @@ class Deepening:
             self._take(new)
         return self._tree
 
-    def _take(self, demands: object) -> None:
+    def _take(self, demands: Iterable[Demand]) -> None:
         """Add demands to the tree, each in its strongest form within the budget."""
         fresh: list[Demand] = []
-        for first, second in demands:  # type: ignore[attr-defined]
+        for first, second in demands:
             alone = [side for side in (first, second) if side is not None and self._stands_alone(side)]
             strong: list[Demand] = [(side, None) for side in alone]
             if not strong and second is not None:

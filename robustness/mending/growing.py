@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from robustness.mending.demands import Side, bits, holds_apart, worth
 from robustness.mending.goal import Part
 
-__all__ = ["every_pair", "grown_sides", "shrunk"]
+__all__ = ["every_pair", "grown_sides", "lonely_nodes", "shrunk"]
 
 
 def grown_sides(
@@ -41,6 +41,19 @@ def grown_sides(
                 side = Side(part, M, S)
                 if worth(side, heard) < part.s:
                     yield side
+
+
+def lonely_nodes(heard: Sequence[int], part: Part) -> tuple[list[tuple[Side, Side]], int]:
+    """Return the violations between one node and all others, and how many arcs it takes to break them.
+
+    For r >= 2 nobody hears r of one node, so that a node which hears fewer than r has to hear r.
+    """
+    if part.trap is not None or part.r < 2 or len(heard) < 2:
+        return [], 0
+    everybody = (1 << len(heard)) - 1
+    lonely = [(i, mask.bit_count()) for i, mask in enumerate(heard) if mask.bit_count() < part.r]
+    pairs = [(Side(part, 0, 1 << i), Side(part, 0, everybody & ~(1 << i))) for i, _ in lonely]
+    return pairs, sum(part.r - hears for _, hears in lonely)
 
 
 def every_pair(heard: Sequence[int], part: Part) -> Iterator[tuple[Side, Side]]:

@@ -37,7 +37,7 @@ from robustness.mending.demands import (
     worth,
 )
 from robustness.mending.goal import Part
-from robustness.mending.growing import every_pair, grown_sides, shrunk
+from robustness.mending.growing import every_pair, grown_sides, lonely_nodes, shrunk
 from robustness.mending.master import Master, Proposal
 from robustness.mending.oracle import first_violation
 from robustness.traps.question import Sets
@@ -172,6 +172,11 @@ class Search:
             return
         self._master = Master(self.graph, self.actions, self.limits)
         self._deepening = Deepening.of(self)
+        for part in self.parts:
+            pairs, arcs = lonely_nodes(self.base, part)
+            for pair in pairs:
+                self.learn(*pair)
+            self.raise_bound(-(-arcs // (1 if self.actions.one_way else 2)) * self.actions.cheapest)
         self._spread(self.base)
         self._grow(self.base)
         for part in self.parts:
