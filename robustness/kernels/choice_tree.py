@@ -43,6 +43,7 @@ class ChoiceTree:
     budget : int
     state : (heard, usable, options, picked, spent)
         The rows of level 0 of ``heard`` and ``usable``, and the first of ``spent``, are filled in.
+
     Attributes
     ----------
     into : array of int32, shape (n, n)
