@@ -119,17 +119,22 @@ def test_covers_bear_the_bound_and_are_of_robust_parts() -> None:
 
 
 def test_a_start_bears_no_more_than_its_lemma_says() -> None:
-    """For 3-robustness: a cover around three nodes of the path has room for 3 + 2 arcs, and 9 - 5 more are needed."""
+    """For 3-robustness: a cover around three nodes of the path has room for 3 + 2 arcs, and 9 - 5 more are needed.
+
+    With the required link, which lies inside the cover, that makes five.
+    """
     subject = PATH.canonical_bytes()
 
-    def with_cover(starts: list[list[int]], *cover: list[int], least: int = 4) -> LeastVerdict:
-        document = changed(made(GOALS[2]), put("pairs", value=[]))
-        document = changed(document, put("covers", value=[[0, starts, *cover]]))
-        document = changed(document, put("claim", "least", value=least))
-        return confirm_least(subject, document).verdict
+    def with_cover(starts: list[list[int]], *cover: list[int], least: int = 5) -> LeastVerdict:
+        def change(document: dict[str, Any]) -> None:
+            document["pairs"], document["covers"] = [], [[0, starts, *cover]]
+            document["claim"] |= {"least": least, "cost": None}
+            document["actions"]["chosen"], document["lengths"] = None, []
+
+        return confirm_least(subject, changed(made(GOALS[2]), change).partition(b"\n")[0] + b"\n").verdict
 
     assert with_cover([[0, 1, 2]], [0, 1, 2], [2, 3], [3, 4]) is LeastVerdict.CONFIRMED
-    assert with_cover([[0, 1, 2]], [0, 1, 2], [2, 3], [3, 4], least=5) is LeastVerdict.REFUTED
+    assert with_cover([[0, 1, 2]], [0, 1, 2], [2, 3], [3, 4], least=6) is LeastVerdict.REFUTED
     assert with_cover([], [0, 1, 2], [2, 3], [3, 4]) is LeastVerdict.REFUTED
     with pytest.raises(RejectedCertificate, match="lies inside one of its sets"):
         with_cover([[0, 1, 3]], [0, 1, 2], [2, 3], [3, 4])

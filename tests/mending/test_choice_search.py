@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import random
+import sys
 from itertools import combinations
 from pathlib import Path
 from types import ModuleType
@@ -22,17 +23,22 @@ from robustness.mending.goal import Part
 from robustness.mending.hitting_set import Search
 from robustness.traps.question import Question
 
-SOURCE = Path(choice_tree.__file__).resolve().parent / "choice_tree.py"
+FOLDER = Path(choice_tree.__file__).resolve().parent
 
 
-def plain() -> ModuleType:
-    """Return the kernel as plain Python."""
-    spec = importlib.util.spec_from_file_location("plain_choice_tree", SOURCE)
+def from_source(name: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(f"plain_{name}", FOLDER / f"{name}.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+def plain(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """Return the kernel as plain Python, with what it calls."""
+    monkeypatch.setitem(sys.modules, "robustness.kernels.twins", from_source("twins"))
+    return from_source("choice_tree")
 
 
 def question(rng: random.Random) -> tuple[list[int], Actions, list[tuple[Side, Side | None]]]:
@@ -125,7 +131,7 @@ def test_a_choice_is_found_within_the_budget_exactly_when_there_is_one(
     is_plain: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if is_plain:
-        monkeypatch.setattr(choice_search, "ChoiceTree", plain().ChoiceTree)
+        monkeypatch.setattr(choice_search, "ChoiceTree", plain(monkeypatch).ChoiceTree)
     rng = random.Random(7)
     found = missed = none = 0
     for _ in range(40 if is_plain else 200):
@@ -151,7 +157,7 @@ def test_one_round_of_plain_python_and_of_machine_code_look_at_the_same_nodes(mo
     rng = random.Random(3)
     told: list[tuple[int, int | None]] = []
     questions = [question(rng) for _ in range(30)]
-    for module in (choice_tree, plain()):
+    for module in (choice_tree, plain(monkeypatch)):
         monkeypatch.setattr(choice_search, "ChoiceTree", module.ChoiceTree)
         for heard, actions, demands in questions:
             if actions.items:
