@@ -89,6 +89,14 @@ class TestWords:
         assert "1 were not decided within the limit: nothing is claimed about them" in cut.html
 
 
+class TestShown:
+    def test_short_in_a_prompt_and_data_on_request(self, made: Report) -> None:
+        assert repr(made).startswith("<Report: 4 networks, refuted, ")
+        assert repr(made.survey) == "<Survey: 4 networks, refuted>"
+        assert str(made) == str(made.survey)
+        assert made.as_dict() == made.survey.as_dict()
+
+
 class TestMending:
     def test_what_a_network_lacks_is_proposed_and_what_passes_gets_nothing(self) -> None:
         graphs = {"path": nx.path_graph(5), "complete": nx.complete_graph(5)}

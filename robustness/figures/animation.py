@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import html
 import os
+import re
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -89,12 +91,30 @@ def _last_of_interest(run: Run, end: int) -> int:
     return max(1, min(end, 200 if run.outcome.exact else end))
 
 
-def _page(film: Any, run: Run) -> str:
-    import html
+#: matplotlib's player takes the pictures on its buttons from a server; these letters stand for them.
+_BUTTONS = {
+    "minus": "\u2212", "fast-backward": "|\u25c0", "step-backward": "\u2039", "play fa-flip-horizontal": "\u25c0",
+    "pause": "||", "play": "\u25b6", "step-forward": "\u203a", "fast-forward": "\u25b6|", "plus": "+",
+}  # fmt: skip
 
+#: For a narrow screen: the picture shrinks, and the slider and the buttons with it.
+_STYLE = (
+    "body { margin: 0.5rem; } .animation, .animation img { max-width: 100%; height: auto; }"
+    " input[type=range].anim-slider { width: 95%; } .anim-buttons button { min-height: 32px; }"
+)
+
+
+def _page(film: Any, run: Run) -> str:
+    """Return the film as one page that loads nothing."""
     from matplotlib import rc_context
 
     with rc_context({"animation.embed_limit": 60.0, "savefig.dpi": 80}):
         player = film.to_jshtml(fps=_RATE, default_mode="once")
+    player = re.sub(r"<link\b[^>]*>", "", player)
+    player = re.sub(r'<i class="fa fa-([a-z -]+)"></i>', lambda icon: _BUTTONS.get(icon[1], icon[1]), player)
     title = html.escape(run_title(run))
-    return f"<!DOCTYPE html>\n<html lang='en'>\n<meta charset='utf-8'>\n<title>{title}</title>\n{player}\n</html>\n"
+    return (
+        f"<!DOCTYPE html>\n<html lang='en'>\n<meta charset='utf-8'>\n"
+        f"<meta name='viewport' content='width=device-width, initial-scale=1'>\n<title>{title}</title>\n"
+        f"<link rel='icon' href='data:,'>\n{player}\n<style>{_STYLE}</style>\n</html>\n"
+    )

@@ -22,7 +22,7 @@ from robustness.surveying.row import Findings
 __all__ = ["Kept", "Report", "report", "report_of", "require_drawing"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Report:
     """A page about many networks.
 
@@ -40,6 +40,17 @@ class Report:
     def write(self, path: str | os.PathLike[str]) -> None:
         """Write the page to a file, whole or not at all."""
         replace_file(path, self.html.encode("utf-8"))
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return what the page shows as rows, as JSON-ready values."""
+        return self.survey.as_dict()
+
+    def __str__(self) -> str:
+        return str(self.survey)
+
+    def __repr__(self) -> str:
+        count = len(self.survey)
+        return f"<Report: {count} network{'s' * (count != 1)}, {self.survey.worst}, {len(self.html):,} characters>"
 
     def _repr_html_(self) -> str:
         return self.survey._repr_html_()

@@ -29,7 +29,7 @@ from robustness.whole_numbers import taking_numpy_integers
 __all__ = ["Survey", "survey"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Survey:
     """The rows of a survey, in the order of its networks.
 
@@ -91,6 +91,9 @@ class Survey:
 
     def __str__(self) -> str:
         return tables.text(self.rows, self.models)
+
+    def __repr__(self) -> str:
+        return f"<Survey: {len(self.rows)} network{'s' * (len(self.rows) != 1)}, {self.worst}>"
 
     def _repr_html_(self) -> str:
         head, *body = tables.cells(self.rows, self.models)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -196,6 +197,9 @@ class TestFilms:
         animate(run_of(outcome), tmp_path / "film.html")
         page = (tmp_path / "film.html").read_text(encoding="utf-8")
         assert page.startswith("<!DOCTYPE html>")
+        shell = re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL)
+        assert re.findall(r"https?:|@import|url\(", shell) == []
+        assert 'class="fa' not in page
         assert "data:image/png;base64" in page
 
     def test_what_cannot_be_filmed(self, tmp_path: Path) -> None:
