@@ -27,11 +27,12 @@ from robustness.mending.goal import Part
 
 __all__ = ["Deepening"]
 
-#: Nodes of the tree in a round, and by which factor more in the next one: counted, so that every machine does the same.
-_LOOKS, _GROWTH = 400_000, 1.4
+#: Nodes of the tree in the first round, by which factor more in the next one, and never more: counted, so that every
+#: machine does the same. Few at first, so that links that reach the goal do not wait for a proof.
+_LOOKS, _GROWTH, _MOST = 20_000, 1.8, 2_000_000
 
 #: The clock is looked at after so many nodes; plain Python takes as long for one in a hundred.
-_SLICE, _PLAIN = 20_000, 100
+_SLICE, _PLAIN = 4_000, 100
 
 #: Larger sets take in much for little.
 _LARGEST = 10
@@ -104,7 +105,7 @@ class Deepening:
         search = self._search
         scale = 1 if kernels.IS_COMPILED else _PLAIN
         left = int(self._looks) // scale
-        self._looks *= _GROWTH
+        self._looks = min(self._looks * _GROWTH, _MOST)
         while left > 0 and not search.is_done:
             if search.limits.expired():
                 raise Undecided("the limit came during the tree search")
