@@ -86,7 +86,7 @@ def certify(
     certificates.verify : the checker
 
     >>> import networkx as nx
-    >>> from certificates import MalformedCertificate
+    >>> from certificates import verify
     >>> wheel = Digraph.from_networkx(nx.wheel_graph(5))
     >>> print(verify(wheel.canonical_bytes(), certify(wheel, 2).certificate).verdict)
     robust
