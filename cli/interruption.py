@@ -81,6 +81,9 @@ def interruptibly(
 def end_process(code: int) -> None:
     """End the process with ``code``; at once, without waiting for other threads, when work was left behind."""
     if any(thread.is_alive() for thread in _abandoned):
+        from robustness.files.writing import forget_unfinished
+
+        forget_unfinished()
         for stream in (sys.stdout, sys.stderr):
             with suppress(AttributeError, OSError, ValueError):  # closed, or nobody reads any more
                 stream.flush()

@@ -6,6 +6,7 @@ import errno
 import os
 import stat
 import threading
+from collections.abc import Iterator
 from pathlib import Path
 
 import networkx as nx
@@ -15,7 +16,7 @@ from click.testing import CliRunner
 import robustness as rb
 from cli.main import robustness
 from robustness.files import write_topology
-from robustness.files.writing import replace_file, require_different_files
+from robustness.files.writing import forget_unfinished, replace_file, require_different_files
 
 
 def test_a_device_is_written_into_and_stays_a_device() -> None:
@@ -54,6 +55,33 @@ def test_a_full_disk_leaves_the_old_file_and_nothing_else(tmp_path: Path, monkey
         replace_file(tmp_path / "file", b"new")
     assert caught.value.filename == str(tmp_path / "file")
     assert [path.read_bytes() for path in tmp_path.iterdir()] == [b"old"]
+
+
+def test_a_process_that_ends_while_a_thread_writes_leaves_nothing_half_written(tmp_path: Path) -> None:
+    begun, goes_on = threading.Event(), threading.Event()
+    problems: list[OSError] = []
+
+    def blocks() -> Iterator[bytes]:
+        yield b"half"
+        begun.set()
+        assert goes_on.wait(30)
+
+    def work() -> None:
+        try:
+            replace_file(tmp_path / "x.cert", blocks())
+        except OSError as problem:
+            problems.append(problem)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    assert begun.wait(30)
+    assert len(list(tmp_path.iterdir())) == 1
+    forget_unfinished()
+    assert list(tmp_path.iterdir()) == []
+    goes_on.set()
+    thread.join(30)
+    assert len(problems) == 1
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_folder_is_refused(tmp_path: Path) -> None:

@@ -12,7 +12,11 @@ from pathlib import Path
 
 from robustness.errors import InvalidParameter
 
-__all__ = ["replace_file", "require_different_files", "write_certificate"]
+__all__ = ["forget_unfinished", "replace_file", "require_different_files", "write_certificate"]
+
+
+#: Temporary files of writing that goes on.
+_unfinished: set[str] = set()
 
 
 def write_certificate(path: str | os.PathLike[str], data: bytes | Iterable[bytes]) -> None:
@@ -91,6 +95,7 @@ def _replace(target: Path, data: bytes | Iterable[bytes]) -> None:
     if target.is_dir():
         raise IsADirectoryError(21, "Is a directory")
     handle, temporary = tempfile.mkstemp(prefix=f".{target.name[:64]}.", dir=target.parent)
+    _unfinished.add(temporary)
     try:
         with open(handle, "wb") as stream:
             stream.writelines(_blocks(data))
@@ -102,6 +107,15 @@ def _replace(target: Path, data: bytes | Iterable[bytes]) -> None:
         with suppress(OSError):
             os.unlink(temporary)
         raise
+    finally:
+        _unfinished.discard(temporary)
+
+
+def forget_unfinished() -> None:
+    """Remove what other threads have begun to write: for a process that ends while they work."""
+    for temporary in list(_unfinished):
+        with suppress(OSError):
+            os.unlink(temporary)
 
 
 def _permissions(target: Path) -> int:
