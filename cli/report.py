@@ -62,4 +62,6 @@ def command(
     made = report_of(found, findings, proposals, title=title, gate=networks.gate, pictures=not no_pictures)
     made.write(output)
     console.result(headline(found, networks.gate))
-    ctx.exit(exit_code(console, found, is_interrupted, [f"wrote {output} ({len(found)} networks)"]))
+    ctx.exit(
+        exit_code(console, found, is_interrupted, [f"wrote {output} ({len(found)} network{'s' * (len(found) != 1)})"])
+    )

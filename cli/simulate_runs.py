@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
+import re
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -251,8 +253,20 @@ def _lines(
             least, every = outcome.contraction
             proven = f"on a network without a trap the spread loses at least {least:.2g} of itself in {every} steps"
             yield f"rate       {outcome.rate:.4g} a step, fitted; proven: {proven}"
-    yield f"rule       {scenario.rule}, f = {scenario.f}, {scenario.model}, {scenario.adversary}"
-    yield f"schedule   {scenario.schedule}"
+    yield f"rule       {scenario.rule}, f = {scenario.f}, {scenario.model}, adversary {_in_words(scenario.adversary)}"
+    schedule = scenario.schedule
+    oldest = f", values at most {schedule.tau} step{'s' * (schedule.tau != 1)} old" if schedule.tau else ""
+    yield f"schedule   {_in_words(schedule.update_times)}, {_in_words(schedule.delay_rule)}{oldest}"
+
+
+def _in_words(part: object) -> str:
+    """Return a part of a scenario in words: its kind, and its numbers with their names."""
+    kind = re.sub(r"(?<!^)(?=[A-Z])", " ", type(part).__name__).lower()
+    if not dataclasses.is_dataclass(part):
+        return kind
+    named = [(each.name.replace("_", " "), getattr(part, each.name)) for each in dataclasses.fields(part)]
+    numbers = [f"{name} {value:g}" for name, value in named if type(value) in (int, float)]
+    return kind + (f" ({', '.join(numbers)})" if numbers else "")
 
 
 def _last(scenario: Scenario, outcome: Outcome) -> int:

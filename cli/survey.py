@@ -70,7 +70,7 @@ def command(
     written = []
     if output is not None:
         replace_file(output, content.encode())
-        written.append(f"wrote {output} ({len(found)} networks)")
+        written.append(f"wrote {output} ({len(found)} network{'s' * (len(found) != 1)})")
     if as_json:
         is_complete = not is_interrupted and not found.missing
         console.document(SCHEMA, found.as_dict() | {"is_complete": is_complete})

@@ -124,7 +124,11 @@ def run_title(run: Run) -> str:
     """Return what a picture of the run says above it: its own title, the rule, the model and the verdict."""
     scenario, outcome = run.scenario, run.outcome
     how = f"{rule_named(scenario.rule).name}, f = {scenario.f}, {scenario.model}"
-    delays = "" if scenario.schedule.synchronous else f", values up to {scenario.schedule.oldest} steps old"
+    delays = (
+        ""
+        if scenario.schedule.synchronous
+        else f", values up to {scenario.schedule.oldest} step{'s' * (scenario.schedule.oldest != 1)} old"
+    )
     end = outcome.verdict.value + (", exactly" if outcome.exact else "")
     if outcome.diverged_at is not None:
         end += f" at step {outcome.diverged_at}"

@@ -146,6 +146,8 @@ class MendResult(Shown):
         what = f"{len(self.links)} link{'s' * (len(self.links) != 1)}, cost {self.cost}"
         if self.dropped:
             what = f"{len(self.dropped)} link{'s' * (len(self.dropped) != 1)} can go, {what} stay"
+        if self.verdict is MendVerdict.OPTIMAL and not (self.links or self.dropped):
+            return f"optimal: the network reaches the goal, {self.goal}, as it is; no link is needed"
         if self.verdict is MendVerdict.OPTIMAL:
             return f"optimal: {what}; nothing cheaper reaches the goal, {self.goal}"
         return f"feasible: {what}; at least {self.lower_bound} is needed for the goal, {self.goal}"

@@ -179,7 +179,7 @@ class JointResult(Shown):
         if self.verdict is Verdict.NOT_ROBUST:
             return f"not jointly {what}" + (f" over {self.asked_window} steps" if self.asked_window else "")
         kind = "every" if self.asked_window else "smallest window: every"
-        return f"jointly {what}; {kind} {self.window} consecutive steps"
+        return f"jointly {what}; {kind} {'single step' if self.window == 1 else f'{self.window} consecutive steps'}"
 
     def pictured(self) -> Digraph | None:
         """Return the union of the window that fails, or else of the first one that was decided."""

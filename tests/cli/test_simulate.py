@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -355,3 +356,12 @@ def test_one_limit_for_the_adversary_and_the_run(monkeypatch: pytest.MonkeyPatch
     outcome = CliRunner().invoke(robustness, ["simulate", str(path), "--steps", "20", "--timeout", "40"])
     assert outcome.exit_code in (0, 30)
     assert given == [pytest.approx(10.0, abs=1.0)]
+
+
+@pytest.mark.parametrize("adversary", sorted(ADVERSARIES))
+def test_rule_and_schedule_are_told_in_words(adversary: str) -> None:
+    done = run("simulate", "-", "--steps", "5", "--adversary", adversary, graph=COMPLETE)
+    rule, schedule = (line for line in done.stdout.splitlines() if line.startswith(("rule", "schedule")))
+    assert schedule == "schedule   every step, no delays"
+    assert re.fullmatch(r"rule       adp-msr, f = 1, malicious, adversary [a-z -]+( \([a-z]+ .*\))?", rule), rule
+    assert "=" not in rule.partition("malicious")[2]

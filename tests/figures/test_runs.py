@@ -140,7 +140,7 @@ class TestPlot:
         liars = [line for line in ax.lines if line.get_label().startswith("0 shows")]
         assert all(line.is_dashed() for line in liars)
         assert [set(line.get_ydata()) for line in liars] == [{0.0}, {100.0}]
-        assert ax.get_title(loc="left") == "adp-msr, f = 1, malicious, values up to 1 steps old: split, exactly"
+        assert ax.get_title(loc="left") == "adp-msr, f = 1, malicious, values up to 1 step old: split, exactly"
 
     @pytest.mark.parametrize("vehicles", [5, 19, 40])
     def test_the_legend_covers_no_curve_and_stays_in_the_picture(self, vehicles: int, tmp_path: Path) -> None:

@@ -62,6 +62,7 @@ def test_what_holds_already_needs_nothing_and_the_whole_network_is_a_choice_at_o
     dense = nx.gnp_random_graph(60, 0.5, seed=1)
     found = rb.mend(dense, 4)
     assert (found.verdict.value, found.links, found.lower_bound) == ("optimal", (), 0)
+    assert found.summary() == "optimal: the network reaches the goal, 4-robust, as it is; no link is needed"
     seen = []
     rb.thin(nx.complete_graph(7), 2, on_improvement=seen.append)
     assert seen[0].cost == 21
