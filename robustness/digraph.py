@@ -145,6 +145,13 @@ class Digraph:
         attributes = {node: {"pos": place} for node, place in places if place is not None}
         return cls(graph.nodes(), arcs, directed=graph.is_directed(), node_attributes=attributes)
 
+    @property
+    def places(self) -> list[tuple[float, float]] | None:
+        """Where the nodes stand, in the order of their ids; None unless every one has a place."""
+        found = [place_of(self.node_attributes.get(label, {})) for label in self.labels]
+        placed = [place for place in found if place is not None]
+        return placed if placed and len(placed) == len(found) else None
+
     def to_networkx(self) -> nx.Graph:
         """Return a new networkx graph: a ``Graph`` when the source was undirected, else a ``DiGraph``.
 

@@ -126,3 +126,26 @@ def test_no_command_overwrites_its_input_or_its_own_output(arguments: list[str],
     assert "is the same file as" in outcome.stderr
     assert graph.read_bytes() == before
     assert [path.name for path in tmp_path.iterdir()] == ["graph.json"]
+
+
+@pytest.mark.parametrize("suffix", [".json", ".graphml", ".gexf", ".gml", ".dot"])
+@pytest.mark.filterwarnings("ignore::UserWarning")
+def test_a_network_is_written_with_its_map(suffix: str, tmp_path: Path) -> None:
+    """Labels such as 2 and 10 stand in another order once they are text."""
+    drawn = nx.cycle_graph(12)
+    nx.set_node_attributes(drawn, {i: (1.5 * i, -i / 3) for i in drawn}, "pos")
+    mended = rb.mend(drawn, 2).graph
+    write_topology(mended, tmp_path / f"mended{suffix}")
+    read = rb.read_topology(tmp_path / f"mended{suffix}")
+    assert read.places is not None
+    assert {int(str(label)): place for label, place in zip(read.labels, read.places, strict=True)} == {
+        i: (1.5 * i, -i / 3) for i in drawn
+    }
+
+
+def test_half_a_map_is_not_written(tmp_path: Path) -> None:
+    half = nx.cycle_graph(3)
+    half.nodes[0]["pos"] = (1, 2)
+    assert rb.Digraph.from_networkx(half).places is None
+    write_topology(half, tmp_path / "half.json")
+    assert "pos" not in (tmp_path / "half.json").read_text(encoding="utf-8")

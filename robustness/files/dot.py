@@ -158,6 +158,7 @@ def encode(graph: Digraph) -> bytes:
     directed = graph.directed or not graph.is_symmetric
     kind, arrow = ("digraph", "->") if directed else ("graph", "--")
     quoted = ['"' + text.replace('"', '\\"') + '"' for text in texts]
-    lines = [f"{kind} {{", *(f"  {name};" for name in quoted)]
+    places = [f' [pos="{x!r},{y!r}"]' for x, y in graph.places or ()] or [""] * graph.n
+    lines = [f"{kind} {{", *(f"  {name}{place};" for name, place in zip(quoted, places, strict=True))]
     lines += [f"  {quoted[u]} {arrow} {quoted[v]};" for u, v in graph.arcs() if directed or u < v]
     return ("\n".join([*lines, "}"]) + "\n").encode()

@@ -172,5 +172,8 @@ def encode(graph: Digraph) -> bytes:
         warn_lossy("GML makes every label text")
     stream = io.BytesIO()
     bare = Digraph(texts, ((texts[u], texts[v]) for u, v in graph.arcs()), directed=graph.directed)
-    nx.write_gml(bare.to_networkx(), stream)
+    written = bare.to_networkx()
+    for text, (x, y) in zip(texts, graph.places or (), strict=False):
+        written.nodes[text]["graphics"] = {"x": x, "y": y}
+    nx.write_gml(written, stream)
     return stream.getvalue()

@@ -84,9 +84,11 @@ def _canonical(data: bytes, options: ReadingOptions) -> Digraph:
 
 
 def encode(graph: Digraph) -> bytes:
-    """Return ``graph`` as node-link JSON, one node or edge a line, the same bytes for equal graphs."""
+    """Return ``graph`` as node-link JSON, one node or edge a line, the same bytes for equal graphs and places."""
     directed = graph.directed or not graph.is_symmetric
-    nodes = [{"id": label} for label in graph.labels]
+    nodes: list[dict[str, Any]] = [{"id": label} for label in graph.labels]
+    for node, place in zip(nodes, graph.places or (), strict=False):
+        node["pos"] = list(place)
     edges = [{"source": graph.labels[u], "target": graph.labels[v]} for u, v in graph.arcs() if directed or u < v]
     body = ",\n".join(f'"{key}": {_rows(rows)}' for key, rows in (("nodes", nodes), ("edges", edges)))
     head = f'"directed": {json.dumps(directed)},\n"multigraph": false,\n"graph": {{}},'

@@ -11,7 +11,7 @@ refused as soon as the XML parser itself, expat, reports it.
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 from xml.parsers import expat
@@ -68,7 +68,7 @@ def encode_graphml(graph: Digraph) -> bytes:
     import networkx as nx
 
     stream = io.BytesIO()
-    nx.write_graphml_xml(_with_text_labels(graph, "GraphML"), stream)
+    nx.write_graphml_xml(_with_text_labels(graph, "GraphML", lambda x, y: {"x": x, "y": y}), stream)
     return stream.getvalue()
 
 
@@ -77,17 +77,21 @@ def encode_gexf(graph: Digraph) -> bytes:
     import networkx as nx
 
     stream = io.BytesIO()
-    nx.write_gexf(_with_text_labels(graph, "GEXF"), stream)
+    where = _with_text_labels(graph, "GEXF", lambda x, y: {"viz": {"position": {"x": x, "y": y, "z": 0.0}}})
+    nx.write_gexf(where, stream)
     return stream.getvalue()
 
 
-def _with_text_labels(graph: Digraph, form: str) -> nx.Graph:
-
+def _with_text_labels(graph: Digraph, form: str, placed: Callable[[float, float], dict[str, object]]) -> nx.Graph:
+    """Return the network with its labels as text, and where its nodes stand in the words of the format."""
     texts = texts_of(graph.labels, form, is_allowed=_survives_xml)
     if any(type(label) is not str for label in graph.labels):
         warn_lossy(f"{form} makes every label text")
     bare = Digraph(texts, ((texts[u], texts[v]) for u, v in graph.arcs()), directed=graph.directed)
-    return bare.to_networkx()
+    written = bare.to_networkx()
+    for text, place in zip(texts, graph.places or (), strict=False):
+        written.nodes[text].update(placed(*place))
+    return written
 
 
 def _survives_xml(text: str) -> bool:
