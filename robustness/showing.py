@@ -25,6 +25,9 @@ __all__ = ["Shown", "ShownOverTime", "labels_in_words", "listed_in_words"]
 #: Larger networks are not drawn in notebooks unless asked for: a picture of them says little and takes long.
 _LARGEST = 80
 
+#: Characters of a summary in ``repr``.
+_LONGEST = 100
+
 _LEFT = "style='text-align:left'"
 
 
@@ -65,7 +68,10 @@ class Shown:
         return self.summary()
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__}: {' '.join(self.summary().split())}>"
+        text = " ".join(self.summary().split())
+        if len(text) > _LONGEST:
+            text = f"{text[:_LONGEST].rpartition(' ')[0]} …"
+        return f"<{type(self).__name__}: {text}>"
 
     def pictured(self) -> GraphLike | None:
         """Return the graph that the answer is about, or None when it does not carry one."""

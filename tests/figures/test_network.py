@@ -213,6 +213,7 @@ class TestNotebooks:
             assert str(answer) == answer.summary()
             assert repr(answer).startswith(f"<{type(answer).__name__}: ")
             assert "\n" not in repr(answer)
+            assert len(repr(answer)) < 140
             json.dumps(answer.as_dict(), allow_nan=False)
         assert "<img" not in find_trap(WHEEL, 1)._repr_html_()
 
