@@ -1,7 +1,7 @@
 """A tree search over choices of links: whether a choice of a few links meets all demands known so far.
 
 The counterpart of the master problem (:mod:`robustness.mending.master`) where few links are enough: the kernel looks at
-a million choices a second (:mod:`robustness.kernels.choice_tree`), and takes new demands in where it stands.
+10^5 choices a second and more (:mod:`robustness.kernels.choice_tree`), and takes new demands in where it stands.
 """
 
 from __future__ import annotations
@@ -55,7 +55,6 @@ class ChoiceSearch:
                 if a in actions.required:
                     base[head] |= 1 << tail
                     gained[head] += 1
-        self._base = base
         costs = np.array([item.cost for item in actions.items], dtype=np.int64)
         spent = sum(actions.items[a].cost for a in actions.required)
         levels = max(0, budget - spent) // int(costs.min(initial=budget + 1)) + 2

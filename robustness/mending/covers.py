@@ -28,9 +28,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from robustness.mending.actions import Action
 from robustness.mending.demands import bits
 
-__all__ = ["Cover", "cover_around", "lacking", "rigid_components", "room", "starts_of"]
+__all__ = ["Cover", "cover_around", "lacking", "lies_inside", "price_outside", "rigid_components", "room", "starts_of"]
 
 #: A family of sets, as masks.
 Cover = tuple[int, ...]
@@ -44,6 +45,19 @@ def room(size: int, r: int) -> int:
 def lacking(cover: Iterable[int], n: int, r: int) -> int:
     """Return how many links inside no set of the cover are needed when something takes everything in."""
     return room(n, r) - sum(room(V.bit_count(), r) for V in cover)
+
+
+def lies_inside(ends: tuple[int, int], cover: Cover) -> bool:
+    """Return whether both ends of a link lie inside one set of a cover."""
+    both = 1 << ends[0] | 1 << ends[1]
+    return any(not both & ~V for V in cover)
+
+
+def price_outside(cover: Cover, n: int, r: int, items: Iterable[Action]) -> int | None:
+    """Return what the links cost at least that a cover lacks, none of them inside it; None when there are too few."""
+    costs = sorted(item.cost for item in items if not lies_inside(item.ends, cover))
+    missing = max(0, lacking(cover, n, r))
+    return sum(costs[:missing]) if missing <= len(costs) else None
 
 
 def starts_of(heard: Sequence[int]) -> list[int]:

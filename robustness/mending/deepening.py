@@ -21,7 +21,7 @@ from robustness.errors import Undecided
 from robustness.limits import Limits
 from robustness.mending.actions import Actions
 from robustness.mending.choice_search import MOST_LEVELS, MOST_NODES, ChoiceSearch
-from robustness.mending.covers import Cover, cover_around, lacking
+from robustness.mending.covers import Cover, cover_around, price_outside
 from robustness.mending.demands import Side, worth
 from robustness.mending.goal import Part
 
@@ -181,11 +181,7 @@ class Deepening:
             return False
         if (part, U) not in self._around:
             cover = cover_around(search.base, U, part.r)
-            missing = max(0, lacking(cover, search.graph.n, part.r))
-            outer = sorted(
-                item.cost for item in search.actions.items if not any(self._inside(item.ends, V) for V in cover)
-            )
-            self._around[part, U] = cover, sum(outer[:missing]) if missing <= len(outer) else None
+            self._around[part, U] = cover, price_outside(cover, search.graph.n, part.r, search.actions.items)
         cover, least = self._around[part, U]
         if least is not None and least <= self._budget:
             return False
@@ -195,7 +191,3 @@ class Deepening:
             self._told.add((part, U))
             search.covers.append((part, (U,), cover))
         return True
-
-    @staticmethod
-    def _inside(ends: tuple[int, int], V: int) -> bool:
-        return bool(V >> ends[0] & 1 and V >> ends[1] & 1)

@@ -36,7 +36,7 @@ from robustness.digraph import Digraph
 from robustness.errors import Undecided
 from robustness.limits import UNBOUNDED, Limits
 from robustness.mending.actions import Actions
-from robustness.mending.covers import Cover, lacking, starts_of
+from robustness.mending.covers import Cover, lacking, lies_inside, price_outside, starts_of
 from robustness.mending.demands import Side, Unit, masks_of, units, unlocalizers
 from robustness.mending.goal import Part
 from robustness.solver_calls import solve_within
@@ -79,7 +79,8 @@ class Master:
         self._sides: dict[Side, Any] = {}
         self._freed: dict[Side, Any] = {}
         self._slow: dict[Part, Any] = {}
-        self._starts: list[tuple[Any, int | None]] = []
+        #: What it costs at least that a variable of ``_slow`` is 0; None: it cannot be.
+        self._prices: list[tuple[Any, int | None]] = []
         self._into: dict[int, list[tuple[int, int]]] = defaultdict(list)
         for a, item in enumerate(actions.items):
             for tail, head in item.arcs:
@@ -116,11 +117,11 @@ class Master:
             self._slow[part] = self._model.new_bool_var("")
             for U in starts_of(self._heard):
                 self._model.add(self._worth(Side(part, 0, U)) >= part.s * self._slow[part])
-        outer = [a for a, item in enumerate(self._actions.items) if not _lies_inside(item.ends, cover)]
+        items = self._actions.items
+        outer = [x for item, x in zip(items, self._x, strict=True) if not lies_inside(item.ends, cover)]
         missing = lacking(cover, self._n, part.r)
-        self._model.add(sum(self._x[a] for a in outer) >= missing * (1 - self._slow[part]))
-        costs = sorted(self._actions.items[a].cost for a in outer)
-        self._starts.append((self._slow[part], sum(costs[:missing]) if missing <= len(costs) else None))
+        self._model.add(sum(outer) >= missing * (1 - self._slow[part]))
+        self._prices.append((self._slow[part], price_outside(cover, self._n, part.r, items)))
 
     def solve(
         self,
@@ -141,9 +142,9 @@ class Master:
         most = self._dearest if within is None else min(within, self._dearest)
         if self._ceiling is not None:
             self._ceiling.proto.linear.domain[1] = most
-        for slow, _ in self._starts:
+        for slow, _ in self._prices:
             slow.proto.domain[0] = 0
-        for slow, least in self._starts:
+        for slow, least in self._prices:
             if least is None or least > most:
                 slow.proto.domain[0] = 1
         if not any_choice:
@@ -232,11 +233,6 @@ class Master:
             for u, v in pairwise(alike):
                 gains = [sum(self._x[a] for _, a in self._into[i]) for i in (u, v)]
                 self._model.add(gains[0] >= gains[1])
-
-
-def _lies_inside(ends: tuple[int, int], cover: Cover) -> bool:
-    both = 1 << ends[0] | 1 << ends[1]
-    return any(not both & ~V for V in cover)
 
 
 def _twins(graph: Digraph) -> list[Sequence[int]]:

@@ -53,7 +53,8 @@ def question(rng: random.Random) -> tuple[list[int], Actions, list[tuple[Side, S
     allowed = (
         rng.sample([*every, *((v, u) for u, v in every if one_way)], min(len(every), 8)) if n > 4 or one_way else None
     )
-    cap = rng.choice([None, None, 3])
+    # Never without caps: these demands are not those of a network, and swapping nodes would change them.
+    cap = rng.choice([n, n, 3])
     actions = actions_for(graph, allowed, price, forbid=(), require=(), max_in_degree=cap, one_way=one_way)
     part = rng.choice(
         [Part(2, 1), Part(2, 2), Part(1, 1), Part(3, 2), Part(trap=Question(1, two_faces=True, local=True))]
@@ -172,6 +173,14 @@ def test_a_graph_that_the_master_problem_did_not_settle_in_a_minute() -> None:
     """Four links mend 27 nodes, and three do not: a tree of 10^5 nodes."""
     found = rb.mend(rb.read_topology("topohub:sndlib/sun"), (2, 2), time_limit=300)
     assert (found.verdict.value, found.cost, found.lower_bound) == ("optimal", 4, 4)
+
+
+@pytest.mark.parametrize("goal", [2, (2, 2)])
+def test_one_of_links_that_swapping_makes_alike_is_enough(goal: object) -> None:
+    """Caps that nobody reaches keep the tree from leaving links out; the cheapest choice costs the same."""
+    for network in (nx.star_graph(5), nx.path_graph(6), nx.barbell_graph(3, 0), nx.full_rary_tree(3, 7)):
+        every = len(network)
+        assert rb.mend(network, goal).cost == rb.mend(network, goal, max_in_degree=every).cost
 
 
 def test_more_than_64_nodes_and_links_that_cost_nothing_are_left_to_the_master() -> None:
