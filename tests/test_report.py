@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from html import unescape
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -22,7 +23,9 @@ import robustness as rb
 from cli.main import robustness
 from robustness.files import write_topology
 from robustness.reporting import Report
+from robustness.reporting.front import report_of
 from robustness.reporting.wording import headline
+from robustness.surveying import Row, Survey
 
 pytest.importorskip("matplotlib")
 
@@ -120,6 +123,37 @@ class TestMending:
             rb.report({"a": nx.cycle_graph(5)}, mending=-1, pictures=False)
 
 
+class TestBounds:
+    @pytest.mark.parametrize(
+        ("row", "cell"),
+        [
+            (Row("x", r=2, r_at_most=2), "<td class='number' data-value='2'>2</td>"),
+            (Row("x", r=2, r_at_most=4), "<td class='number' data-upper='4' data-value='2'>2..4</td>"),
+            (Row("x", r=2), "<td class='number' data-upper='' data-value='2'>&gt;=2</td>"),
+            (Row("x"), "<td class='number' data-value=''>?</td>"),
+        ],
+    )
+    def test_a_cell_has_both_ends(self, row: Row, cell: str) -> None:
+        assert cell in report_of(Survey((row,), ()), [], pictures=False).html
+
+    @pytest.mark.parametrize(
+        ("names", "groups"),
+        [
+            (["a/1", "a/2", "b/1"], ["a", "b"]),
+            (["a/1", "a/2"], []),
+            (["a/1", "b/1"], []),
+            (["a/1", "a/2", "b"], []),
+            (["/home/1", "/home/2", "b/1"], []),
+            ([NASTY + "/1", NASTY + "/2", "b/1"], [NASTY.partition("/")[0], "b"]),
+        ],
+    )
+    def test_collections_are_offered_where_names_have_them(self, names: list[str], groups: list[str]) -> None:
+        made = report_of(Survey(tuple(map(Row, names)), ()), [], pictures=False)
+        options = re.findall(r"<option>(.*?)</option>", made.html)
+        assert [unescape(each) for each in options] == groups
+        assert Tags(made.html).open == []
+
+
 class TestSafety:
     def test_tags_nest_and_labels_are_data(self, made: Report) -> None:
         page = Tags(made.html)
@@ -213,6 +247,50 @@ def browser() -> Iterator[Any]:
     opened.quit()
 
 
+class TestBoundsInABrowser:
+    """Rows that are not known whole: what is chosen is certain."""
+
+    ROWS = (
+        Row("a/exact", nodes=9, arcs=1, r=2, r_at_most=2),
+        Row("a/interval", nodes=9, arcs=1, r=2, r_at_most=4),
+        Row("b/open", nodes=9, arcs=1, r=2),
+        Row("b/unknown", nodes=9, arcs=1),
+        Row("b/unreadable", error="no such file"),
+    )
+
+    @pytest.fixture
+    def page(self, browser: Any, tmp_path: Path) -> Any:
+        target = tmp_path / "report.html"
+        report_of(Survey(self.ROWS, ()), [], pictures=False).write(target)
+        browser.get(target.as_uri())
+        browser.find_element("css selector", ".filters summary").click()
+        yield browser
+        assert [entry["message"] for entry in browser.get_log("browser")] == []
+
+    @pytest.mark.parametrize(
+        ("end", "value", "shown"),
+        [
+            ("least", "2", ["a/exact", "a/interval", "b/open"]),
+            ("least", "3", []),
+            ("most", "3", ["a/exact"]),
+            ("most", "4", ["a/exact", "a/interval"]),
+        ],
+    )
+    def test_an_interval_is_chosen_when_all_of_it_lies_within(
+        self, page: Any, end: str, value: str, shown: list[str]
+    ) -> None:
+        page.find_element("css selector", f"input[aria-label='r*: at {end}']").send_keys(value)
+        assert TestInABrowser.names(page) == shown
+
+    def test_a_collection_is_chosen(self, page: Any) -> None:
+        page.find_element("css selector", "#group option:nth-child(2)").click()
+        assert TestInABrowser.names(page) == ["a/exact", "a/interval"]
+
+    def test_seconds_that_nobody_kept_have_no_column(self, page: Any) -> None:
+        heads = [each.text for each in page.find_elements("css selector", "th")]
+        assert heads == ["network", "nodes", "arcs", "r*", "s", "comment"]
+
+
 class TestInABrowser:
     @pytest.fixture
     def page(self, browser: Any, made: Report, tmp_path: Path) -> Any:
@@ -243,6 +321,18 @@ class TestInABrowser:
         page.find_element("css selector", "#words").send_keys("compl")
         assert self.names(page) == ["complete"]
         assert page.find_element("css selector", "#count").text == "1 of 4 shown"
+
+    def test_bounds_choose_rows_and_clear_shows_all_again(self, page: Any) -> None:
+        page.find_element("css selector", ".filters summary").click()
+        least = page.find_element("css selector", "input[aria-label='nodes: at least']")
+        least.send_keys("6")
+        assert self.names(page) == ["complete", "path"]
+        page.find_element("css selector", "input[aria-label='r*: at most']").send_keys("1")
+        assert self.names(page) == ["path"]
+        assert page.find_element("css selector", "#count").text == "1 of 4 shown"
+        page.find_element("css selector", "#clear").click()
+        assert len(self.names(page)) == 4
+        assert least.get_attribute("value") == ""
 
     def test_only_what_does_not_pass(self, page: Any) -> None:
         page.find_element("css selector", "#failing").click()

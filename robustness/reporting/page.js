@@ -33,13 +33,24 @@
   }
 
   const words = document.querySelector("#words"), failing = document.querySelector("#failing");
-  const count = document.querySelector("#count");
+  const count = document.querySelector("#count"), group = document.querySelector("#group");
+  const bounds = [...document.querySelectorAll(".filters fieldset")];
+
+  function isWithin(cell, least, most) {
+    const low = cell.dataset.value, high = cell.dataset.upper ?? low;
+    return (least === "" || (low !== "" && Number(low) >= Number(least))) &&
+      (most === "" || (high !== "" && Number(high) <= Number(most)));
+  }
   function filter() {
     const wanted = words.value.toLowerCase();
+    const asked = bounds.map((each) => [Number(each.dataset.column), ...[...each.querySelectorAll("input")].map(
+      (input) => input.value)]).filter(([, least, most]) => least !== "" || most !== "");
     let shown = 0;
     rows.forEach((row) => {
       const fits = row.textContent.toLowerCase().includes(wanted) &&
-        !(failing && failing.checked && row.dataset.gate === "passed");
+        !(failing && failing.checked && row.dataset.gate === "passed") &&
+        !(group && group.value && row.dataset.group !== group.value) &&
+        asked.every(([column, least, most]) => isWithin(row.cells[column], least, most));
       row.hidden = !fits;
       shown += fits;
       const part = document.getElementById(row.dataset.part);
@@ -50,6 +61,14 @@
   if (words) {
     words.addEventListener("input", filter);
     if (failing) failing.addEventListener("change", filter);
+    const filters = document.querySelector(".filters");
+    for (const event of ["input", "change"]) filters.addEventListener(event, filter); // a choice tells the second only
+    filters.querySelector("#clear").addEventListener("click", () => {
+      filters.querySelectorAll("input").forEach((input) => { input.value = ""; });
+      if (group) group.value = "";
+      filter();
+    });
+    filter(); // a browser that goes back keeps what was typed
   }
 
   function open() {
@@ -60,7 +79,7 @@
   open();
   let folded = [];
   window.addEventListener("beforeprint", () => {
-    folded = [...document.querySelectorAll("details:not([open])")];
+    folded = [...document.querySelectorAll("details.network:not([open])")];
     folded.forEach((part) => { part.open = true; });
   });
   window.addEventListener("afterprint", () => folded.forEach((part) => { part.open = false; }));

@@ -64,7 +64,7 @@ def _resource(name: str) -> str:
 
 def _table(survey: Survey, sections: Mapping[str, Section]) -> str:
     """Return the table, with what sorts and filters it."""
-    head, *body = cells(survey.rows, survey.models)
+    head, *body = _kept(cells(survey.rows, survey.models), survey)
     has_gate = "gate" in head
     has_pictures = any(section.picture for section in sections.values())
     names = "".join(_head(name) for name in head) + ("<th>picture</th>" if has_pictures else "")
@@ -76,8 +76,47 @@ def _table(survey: Survey, sections: Mapping[str, Section]) -> str:
     return (
         "<div class='tools'><label>find <input type='search' id='words'></label>"
         f"{failing}<span id='count' class='faint' role='status'>{len(body)} of {len(body)} shown</span></div>\n"
+        f"{_filters(head, [row.network for row in survey.rows])}"
         "<div class='scroll' tabindex='0' role='region' aria-label='networks'>"
         f"<table class='networks'><thead><tr>{names}</tr></thead><tbody>{lines}</tbody></table></div>"
+    )
+
+
+def _kept(table: list[list[str]], survey: Survey) -> list[list[str]]:
+    """Return the table without the seconds where no row has kept them."""
+    if any(row.seconds for row in survey.rows):
+        return table
+    left_out = table[0].index("seconds")
+    return [line[:left_out] + line[left_out + 1 :] for line in table]
+
+
+def _group(name: str) -> str:
+    """Return the collection or folder that a name begins with; empty where there is none."""
+    return name.rpartition("/")[0] and name.partition("/")[0]
+
+
+def _filters(head: Sequence[str], networks: Sequence[str]) -> str:
+    """Return the bounds by which rows can be chosen, folded: a collection, and a least and a greatest value each."""
+    groups = sorted(set(map(_group, networks)))
+    chosen = ""
+    if 1 < len(groups) < len(networks) and "" not in groups:
+        options = "".join(f"<option>{escape(each)}</option>" for each in groups)
+        chosen = f"<label>collection <select id='group'><option value=''>all</option>{options}</select></label>"
+    bounds = "".join(
+        f"<fieldset data-column='{k}'><legend>{escape(name)}</legend>"
+        + "".join(
+            f"<input type='number' step='any' class='{end}' aria-label='{escape(name, quote=True)}: {words}' "
+            f"placeholder='{words}'>"
+            for end, words in (("least", "at least"), ("most", "at most"))
+        )
+        + "</fieldset>"
+        for k, name in enumerate(head)
+        if _class(name)
+    )
+    return (
+        f"<details class='filters'><summary>Filter by value</summary><div class='bounds'>{chosen}{bounds}"
+        "<button type='button' id='clear'>Clear</button></div><p class='faint'>An interval such as 2..4 is shown when "
+        "all of it lies within the bounds, and what is not known never is.</p></details>\n"
     )
 
 
@@ -93,19 +132,27 @@ def _class(name: str) -> str:
 def _line(k: int, row: Row, line: Sequence[str], head: Sequence[str], section: Section, has_pictures: bool) -> str:
     shown = []
     for name, cell in zip(head, line, strict=True):
-        value = escape(cell.lstrip(">=").partition("..")[0] if cell != "?" else "", quote=True)
         if name == "network":
             shown.append(
                 f"<td class='name' data-value='{escape(cell, quote=True)}'><a href='#n{k}'>{escape(cell)}</a></td>"
             )
         elif name == "gate":
-            shown.append(f"<td class='{escape(cell, quote=True)}' data-value='{value}'>{escape(cell)}</td>")
+            shown.append(f"<td class='{escape(cell, quote=True)}'{_values(cell)}>{escape(cell)}</td>")
         else:
-            shown.append(f"<td{_class(name)} data-value='{value}'>{escape(cell)}</td>")
+            shown.append(f"<td{_class(name)}{_values(cell)}>{escape(cell)}</td>")
     if has_pictures:
         image = f"<img class='thumb' alt='' src='{as_data_address(section.picture)}'>" if section.picture else ""
         shown.append(f"<td>{image}</td>")
-    return f"<tr data-gate='{escape(row.gate, quote=True)}' data-part='n{k}'>{''.join(shown)}</tr>"
+    group = f" data-group='{escape(_group(row.network), quote=True)}'"
+    return f"<tr data-gate='{escape(row.gate, quote=True)}'{group} data-part='n{k}'>{''.join(shown)}</tr>"
+
+
+def _values(cell: str) -> str:
+    """Return what a cell sorts by, and the upper end of an interval (empty where none is known) to filter by."""
+    low, dots, high = ("", "", "") if cell == "?" else cell.lstrip(">=").partition("..")
+    is_open = dots or cell.startswith(">=")
+    upper = f" data-upper='{escape(high, quote=True)}'" if is_open else ""
+    return f"{upper} data-value='{escape(low, quote=True)}'"
 
 
 def _part(k: int, row: Row, section: Section, models: Sequence[str]) -> str:
