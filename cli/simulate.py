@@ -55,6 +55,12 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
     help="A picture (.png, .svg, .pdf); with --experiment also a folder for one per case.",
 )
 @click.option("--animate", type=_FILE, metavar="FILE", help="The first run as a film: .gif, or .html to play.")
+@click.option(
+    "--last-step",
+    type=click.IntRange(min=1),
+    metavar="K",
+    help="Where the picture and the film end; otherwise a while after nothing moves any more.",
+)
 @click.option("--expect", type=click.Choice(("agreement", "split")), help="Exit with 10 when it ends otherwise.")
 @query_options()
 def command(ctx: click.Context, console: Console, query: Query, /, **options: Any) -> None:

@@ -30,6 +30,8 @@ class Simulation:
         ``steps`` where the user gave it.
     save, plot, animate : Path or None
         What to write.
+    last_step : int or None
+        Where the picture and the film end; None for a while after nothing moves any more.
     expect : str or None
         The outcome that exits with 0.
     """
@@ -59,6 +61,7 @@ class Simulation:
     save: Path | None
     plot: Path | None
     animate: Path | None
+    last_step: int | None
     expect: str | None
 
     def __post_init__(self) -> None:
@@ -71,6 +74,8 @@ class Simulation:
             raise click.UsageError("give one of --attack and --certificate.")
         if self.animate is not None and (self.experiment or self.certificate):
             raise click.UsageError("--animate shows one run: give it with GRAPH or --replay.")
+        if self.last_step is not None and (self.experiment or (self.plot is None and self.animate is None)):
+            raise click.UsageError("--last-step says where --plot or --animate ends: give one of them, of one run.")
         if self.over_time and (self.source is None or self.certificate):
             raise click.UsageError("--over-time says what GRAPH is, and a certificate is about one graph.")
         if self.repeat is not None and not self.over_time:

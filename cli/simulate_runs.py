@@ -72,13 +72,13 @@ def run_scenario(console: Console, query: Query, asked: Simulation) -> ExitCode:
     if asked.plot is not None:
         from robustness.figures.simulation import Run, draw_runs
 
-        draw_runs([Run(scenario, starts[0], outcomes[0])], asked.plot)
+        draw_runs([Run(scenario, starts[0], outcomes[0])], asked.plot, last_step=asked.last_step)
         console.talk(f"wrote {asked.plot}")
     if asked.animate is not None:
         from robustness.figures.animation import animate
         from robustness.figures.simulation import Run
 
-        animate(Run(scenario, starts[0], outcomes[0]), asked.animate)
+        animate(Run(scenario, starts[0], outcomes[0]), asked.animate, last_step=asked.last_step)
         console.talk(f"wrote {asked.animate}")
     overall = _overall(outcomes)
     if query.as_json:

@@ -149,6 +149,7 @@ class ShownOverTime(Shown):
         *,
         pos: Mapping[Hashable, Sequence[float]] | None = None,
         ax: Axes | None = None,
+        last_step: int | None = None,
     ) -> Axes:
         """Draw the run against time, vehicles coloured by the group they end in, and return the axes.
 
@@ -157,6 +158,8 @@ class ShownOverTime(Shown):
         G, pos
             As for other answers: with a graph given, the graph is drawn instead, with the groups that were watched.
         ax : matplotlib axes, optional
+        last_step : int, optional
+            Where the time axis ends; by default a while after nothing moves any more.
 
         Raises
         ------
@@ -167,7 +170,7 @@ class ShownOverTime(Shown):
         """
         if G is not None:
             return super().plot(G, pos=pos, ax=ax)
-        axes: Axes = _drawing("simulation").draw_outcome(self, ax)
+        axes: Axes = _drawing("simulation").draw_outcome(self, ax, last_step=last_step)
         return axes
 
 

@@ -13,9 +13,11 @@ import numpy as np
 
 from robustness.errors import InvalidParameter, MissingExtra
 from robustness.figures.saving import new_figure
-from robustness.figures.simulation import GROUP_COLORS, Run, recorded, run_title
-from robustness.figures.wording import plain
+from robustness.figures.simulation import GROUP_COLORS, LIAR_COLOR, Run, recorded, run_title
+from robustness.figures.time_span import last_step_shown
+from robustness.figures.wording import nodes_in_words, plain
 from robustness.files import replace_file
+from robustness.natural_order import in_natural_order
 
 __all__ = ["animate"]
 
@@ -23,10 +25,11 @@ __all__ = ["animate"]
 _FRAMES, _RATE = 90, 12
 
 
-def animate(run: Run, path: str | os.PathLike[str]) -> None:
+def animate(run: Run, path: str | os.PathLike[str], *, last_step: int | None = None) -> None:
     """Write a recorded run as an animation: ``.gif``, or ``.html`` with play and pause, in one file without a network.
 
     Across: the position relative to the moving target. Up: one lane per vehicle. A liar is a cross at what it claims.
+    The film ends where a picture does: at ``last_step``, or a while after nothing moves any more.
 
     Raises
     ------
@@ -43,10 +46,8 @@ def animate(run: Run, path: str | os.PathLike[str]) -> None:
         from matplotlib.animation import FuncAnimation, PillowWriter
     except ImportError:
         raise MissingExtra("drawing needs matplotlib: pip install 'graph-robustness[plot]'") from None
-    labels, end = run.scenario.network.union.labels, len(states.p) - 1
-    if run.outcome.diverged_at is not None:
-        end = min(end, run.outcome.diverged_at)
-    steps = np.unique(np.linspace(0, _last_of_interest(run, end), _FRAMES).round().astype(int))
+    labels, end = run.scenario.network.union.labels, last_step_shown(run.outcome, last_step)
+    steps = np.unique(np.linspace(0, end, _FRAMES).round().astype(int))
     numbered = enumerate(group for _, group in run.outcome.groups)
     colors = {label: GROUP_COLORS[k % len(GROUP_COLORS)] for k, group in numbered for label in group}
     normal = [i for i, label in enumerate(labels) if label not in run.start.malicious]
@@ -58,19 +59,23 @@ def animate(run: Run, path: str | os.PathLike[str]) -> None:
     margin = 0.1 * (high - low) or 1.0
     axes.set_xlim(low - margin, high + margin)
     axes.set_ylim(-0.8, len(labels) - 0.2)
-    axes.set_yticks(range(len(labels)), [plain(label) for label in labels], fontsize=max(4, 9 - len(labels) // 12))
-    axes.set_xlabel("position relative to the moving target")
+    in_order = in_natural_order(labels)
+    axes.set_yticks(range(len(labels)), [plain(each) for each in in_order], fontsize=max(4, 9 - len(labels) // 12))
+    axes.invert_yaxis()
+    lane = np.argsort([labels.index(each) for each in in_order])
+    claimed = f"\ncross: what {nodes_in_words([labels[i] for i in bad], 4)} claims, at the edge when farther out"
+    axes.set_xlabel("position relative to the moving target" + (claimed if bad else ""))
     axes.set_title(run_title(run), fontsize=10, loc="left")
     axes.grid(axis="y", alpha=0.3)
-    dots = axes.scatter(states.p[0, normal], normal, c=[colors[labels[i]] for i in normal], s=46, zorder=3)
-    crosses = axes.scatter(states.sent[0, bad], bad, marker="x", c="#d55e00", s=60, zorder=3)
+    dots = axes.scatter(states.p[0, normal], lane[normal], c=[colors[labels[i]] for i in normal], s=46, zorder=3)
+    crosses = axes.scatter(states.sent[0, bad], lane[bad], marker="x", c=LIAR_COLOR, s=60, zorder=3)
     clock = axes.text(0.99, 0.02, "", transform=axes.transAxes, ha="right", va="bottom", fontsize=9)
 
     def show(step: int) -> list[Any]:
-        dots.set_offsets(np.column_stack([states.p[step, normal], normal]))
+        dots.set_offsets(np.column_stack([states.p[step, normal], lane[normal]]))
         if bad:
             claims = np.clip(states.sent[step, bad], low - margin, high + margin)
-            crosses.set_offsets(np.column_stack([claims, bad]))
+            crosses.set_offsets(np.column_stack([claims, lane[bad]]))
         clock.set_text(f"step {step}")
         return [dots, crosses, clock]
 
@@ -82,13 +87,6 @@ def animate(run: Run, path: str | os.PathLike[str]) -> None:
         else:
             made.write_text(_page(film, run), encoding="utf-8")
         replace_file(path, made.read_bytes())
-
-
-def _last_of_interest(run: Run, end: int) -> int:
-    """Return where the film ends: a little after agreement, or where the run does; a split is short."""
-    if run.outcome.since is not None:
-        return max(1, min(end, 2 * run.outcome.since + 5))
-    return max(1, min(end, 200 if run.outcome.exact else end))
 
 
 #: matplotlib's player takes the pictures on its buttons from a server; these letters stand for them.

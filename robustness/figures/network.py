@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
@@ -12,6 +13,7 @@ import numpy as np
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import MissingExtra
 from robustness.figures.marking import Marks, marks_of
+from robustness.figures.naming import write_names
 from robustness.figures.placement import Positions, positions_for, positions_in
 from robustness.figures.saving import new_figure, save_figure
 from robustness.figures.wording import plain
@@ -82,17 +84,17 @@ def draw(
     graph = as_digraph(drawn)
     marks = marks_of(graph, result_or_attack)
     known = positions_in(drawn)
-    places = positions_for(graph, marks, pos, known)
+    places, is_map = positions_for(graph, marks, pos, known), pos is not None or known is not None
     if ax is None:
         try:
             from matplotlib import pyplot as plt
         except ImportError:
             raise MissingExtra("drawing needs matplotlib: pip install 'graph-robustness[plot]'") from None
-        ax = plt.subplots(figsize=_size(graph), layout="constrained")[1]
-    _draw_on(ax, graph, marks, places)
-    if pos is None and known is None:
+        ax = plt.subplots(figsize=_size(graph, places, is_map), layout="constrained")[1]
+    _draw_on(ax, graph, marks, places, _size(graph, places, is_map))
+    if not is_map:
         # Circles of ours stay circles, in a picture that is filled, so that no node of a flat one is cut off; maps and
-        # users' places fill the picture as they are.
+        # users' places fill a picture of their shape.
         ax.set_aspect("equal", adjustable="datalim")
     return ax
 
@@ -111,47 +113,51 @@ def draw_to_file(
     pos: Mapping[Hashable, Sequence[float]] | None = None,
 ) -> None:
     """Draw as :func:`draw` does, to a file in the format of its suffix; the same picture gives the same bytes."""
-    graph = as_digraph(G)
-    figure = new_figure(*_size(graph))
+    graph, known = as_digraph(G), positions_in(G)
+    places = positions_for(graph, marks_of(graph, result_or_attack), pos, known)
+    figure = new_figure(*_size(graph, places, pos is not None or known is not None))
     draw(G, result_or_attack, pos=pos, ax=figure.subplots())
     save_figure(figure, path)
 
 
-def _size(graph: Digraph) -> tuple[float, float]:
+def _size(graph: Digraph, places: Positions, is_map: bool) -> tuple[float, float]:
+    """Return the width and height of a picture in inches; a map's has the shape of the map, within reason."""
     side = min(5.0 + graph.n / 15, 12.0)
-    return side * 1.35, side
+    if not is_map or len(places) < 2:
+        return side * 1.35, side
+    across, up = np.ptp(np.array(list(places.values())), axis=0)
+    shape = min(max(across / up if up else math.inf, 0.6), 3.0)
+    return side * max(1.35, shape**0.75) + 0.5, side * min(1.35, shape**-0.25)
 
 
-def _draw_on(axes: Axes, graph: Digraph, marks: Marks, places: Positions) -> None:
+def _draw_on(axes: Axes, graph: Digraph, marks: Marks, places: Positions, shape: tuple[float, float]) -> None:
     """Draw arcs first, then nodes, then names, then what everything means."""
     picture = nx.DiGraph()
     picture.add_nodes_from(range(graph.n))
     picture.add_edges_from(graph.arcs())
-    size = _node_size(places, _size(graph)[1])
+    size = _node_size(places, shape)
     _draw_arcs(axes, picture, graph, marks, places, size)
     handles = [_draw_group(axes, picture, name, group, places, size) for name, group in _groups(graph, marks)]
-    names = {i: plain(label) for i, label in enumerate(graph.labels)}
-    longest = max(map(len, names.values()), default=1)
-    font = max(5.0, min(11.0, 11.0 * (size / 620) ** 0.5)) * (1.0 if longest <= 3 else 0.8)
-    lifted = places if longest <= 3 else _below(places, graph.n)
-    nx.draw_networkx_labels(picture, lifted, names, font_size=font, ax=axes, clip_on=False)
+    write_names(axes, {i: plain(label) for i, label in enumerate(graph.labels)}, places, size, shape)
     if marks.title:
         axes.set_title(plain(marks.title), fontsize=11, wrap=True)
     axes.set_axis_off()
     axes.margins(0.12)
-    _legend(axes, [*(handle for handle in handles if handle is not None), *_arc_handles(marks)])
+    told = [handle for handle in handles if handle is not None]
+    _legend(axes, [*(told if len(told) > 1 else []), *_arc_handles(marks)])
 
 
-def _node_size(places: Positions, side: float) -> float:
-    """Return the area of a node in square points: what the places leave room for on a picture of so many inches."""
+def _node_size(places: Positions, shape: tuple[float, float]) -> float:
+    """Return the area of a node in square points: what the places leave room for on a picture of this shape."""
     largest, least = 620.0, 70.0
     if len(places) < 2:
         return largest
     points = np.array([places[i] for i in sorted(places)])
-    extent = np.ptp(points, axis=0).max() or 1.0
+    extent = np.ptp(points, axis=0)
+    points = points / np.where(extent > 0, extent, 1.0) * np.array(shape)
     near = np.sort(np.hypot(*(points[:, None] - points[None]).T), axis=0)[1]
     # Most nodes get room; where a few lie nearly on top of each other, nothing helps.
-    room = float(np.quantile(near, 0.3)) / extent * side * 72 * 0.8
+    room = float(np.quantile(near, 0.3)) * 72 * 0.8
     return float(min(largest, max(least, (0.8 * room) ** 2)))
 
 
@@ -171,8 +177,8 @@ def _draw_group(
         picture, places, nodelist=sorted(group), node_color=color, node_shape=shape, node_size=size,
         edgecolors="#404040", linewidths=0.8, ax=axes,
     )  # fmt: skip
-    count = f"{len(group)} node{'s' * (len(group) != 1)}"
-    drawn.set_label({"M": f"M, malicious: {count}", "rest": f"other nodes: {len(group)}"}.get(name, f"{name}: {count}"))
+    told = {"M": "M, malicious", "rest": "other"}.get(name, name)
+    drawn.set_label(f"{told}: {len(group)} node{'s' * (len(group) != 1)}")
     return drawn
 
 
@@ -227,18 +233,11 @@ def _arc_handles(marks: Marks) -> list[Any]:
     return [Line2D([], [], color=color, ls=style, lw=2, label=text) for arcs, color, style, text in rows if arcs]
 
 
-def _below(places: Positions, n: int) -> Positions:
-    """Return places for names that do not fit onto their nodes: a little below."""
-    ups = [up for _, up in places.values()]
-    step = 0.055 * ((max(ups) - min(ups)) or 1.0) * min(1.0, (12 / max(n, 1)) ** 0.45)
-    return {i: (across, up - step) for i, (across, up) in places.items()}
-
-
 def _legend(axes: Axes, handles: list[Any]) -> None:
     """Put what everything means beside the picture, where it covers nothing."""
     from matplotlib.collections import PathCollection
 
-    if len(handles) > 1:
+    if handles:
         drawn = axes.legend(
             handles=handles, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, fontsize="small",
             labelspacing=0.9,

@@ -10,6 +10,7 @@ import numpy as np
 
 from robustness.errors import InvalidParameter
 from robustness.figures.saving import new_figure, save_figure
+from robustness.figures.time_span import last_step_shown
 from robustness.figures.wording import nodes_in_words, plain
 from robustness.simulation.adversaries import Alternating
 from robustness.simulation.dynamics import Floats, to_absolute
@@ -20,7 +21,7 @@ from robustness.simulation.update_rules import rule_named
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["GROUP_COLORS", "QUANTITIES", "Run", "draw_outcome", "draw_runs", "recorded", "run_title"]
+__all__ = ["GROUP_COLORS", "LIAR_COLOR", "QUANTITIES", "Run", "draw_outcome", "draw_runs", "recorded", "run_title"]
 
 #: What can be drawn: the axis label of each quantity.
 QUANTITIES = {
@@ -32,7 +33,7 @@ QUANTITIES = {
 #: One colour for every group of vehicles that end together (Okabe and Ito's palette; the liars' red is left out).
 GROUP_COLORS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#8a6d00")
 
-_LIAR = "#d55e00"
+LIAR_COLOR = "#d55e00"
 
 #: Told apart without colour as well: the vehicles of one group take turns.
 _DASHES = ("-", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 1)))
@@ -68,7 +69,8 @@ def draw_runs(
     quantities : sequence of str, optional
         Of :data:`QUANTITIES`. By default positions relative to the target and, where some rule has them, velocities.
     last_step : int, optional
-        Where the time axis ends.
+        Where the time axis ends. By default a while after nothing moves any more, see
+        :func:`robustness.figures.time_span.last_step_shown`.
 
     Raises
     ------
@@ -95,7 +97,9 @@ def draw_runs(
     save_figure(figure, path)
 
 
-def draw_outcome(outcome: Any, ax: Axes | None = None, quantity: str = "relative-position") -> Axes:
+def draw_outcome(
+    outcome: Any, ax: Axes | None = None, quantity: str = "relative-position", last_step: int | None = None
+) -> Axes:
     """Draw one recorded run on axes, new ones of pyplot unless given, and return them; see :func:`draw_runs`."""
     _require_quantities([quantity])
     if not isinstance(outcome, Outcome) or outcome.scenario is None or outcome.start is None:
@@ -107,7 +111,7 @@ def draw_outcome(outcome: Any, ax: Axes | None = None, quantity: str = "relative
         from matplotlib import pyplot as plt
 
         ax = plt.subplots(figsize=(8.0, 4.2), layout="constrained")[1]
-    _draw_quantity(ax, quantity, run, None)
+    _draw_quantity(ax, quantity, run, last_step)
     ax.set_title(run_title(run), loc="left", fontsize=10, wrap=True)
     _legend(ax, ax)
     return ax
@@ -149,14 +153,15 @@ def _draw_quantity(panel: Axes, quantity: str, run: Run, last_step: int | None) 
     times = steps * scenario.T
     values = _values(quantity, scenario, recorded(run), steps)
     normal = [i for i, label in enumerate(labels) if label not in start.malicious]
-    for number, (value, group) in enumerate(outcome.groups):
+    values_in_words = _told_apart([value for value, _ in outcome.groups])
+    for number, (_, group) in enumerate(outcome.groups):
         color = GROUP_COLORS[number % len(GROUP_COLORS)]
         for place, label in enumerate(group):
             i = labels.index(label)
             dashes = _DASHES[place % len(_DASHES)]
             panel.plot(times, values[:, i], ls=dashes, lw=1.4, color=color, label="_")
         if number < _NAMED:
-            panel.plot([], [], color=color, lw=2, label=f"{nodes_in_words(group, 5)} at {value:.4g}")
+            panel.plot([], [], color=color, lw=2, label=f"{nodes_in_words(group, 5)} at {values_in_words[number]}")
     if len(outcome.groups) > _NAMED:
         panel.plot([], [], lw=0, label=f"… {len(outcome.groups) - _NAMED} more")
     if normal:
@@ -165,9 +170,26 @@ def _draw_quantity(panel: Axes, quantity: str, run: Run, last_step: int | None) 
         _draw_claims(panel, quantity, run, steps)
     if outcome.diverged_at is not None:
         panel.axvline(outcome.diverged_at * scenario.T, color="black", lw=0.8, ls=":")
-    panel.set_xlabel("time kT" if scenario.T != 1 else "step k")
+    panel.set_xlabel(_time_axis(run, int(steps[-1])))
+    panel.locator_params(axis="x", integer=scenario.T == 1)
     panel.set_ylabel(QUANTITIES[quantity] if scenario.target_speed or quantity == "velocity" else "position p")
     panel.grid(alpha=0.3)
+
+
+def _told_apart(values: Sequence[float]) -> list[str]:
+    """Return numbers with as few digits as tell them apart, four at least."""
+    for digits in range(4, 17):
+        told = [f"{value:.{digits}g}" for value in values]
+        if len(set(told)) == len(told):
+            break
+    return told
+
+
+def _time_axis(run: Run, last: int) -> str:
+    """Return what stands under the picture: the unit, and how long the run was where it is cut short."""
+    unit = "time kT" if run.scenario.T != 1 else "step k"
+    end = len(recorded(run).p) - 1
+    return unit if last == end or run.outcome.diverged_at is not None else f"{unit} (the run has {end} steps)"
 
 
 def _fit(panel: Axes, shown: Floats) -> None:
@@ -188,7 +210,7 @@ def _draw_claims(panel: Axes, quantity: str, run: Run, steps: Any) -> None:
             claims = sent[chosen, i]
             if quantity == "position":
                 claims = to_absolute(claims, claims, chosen, scenario.T, scenario.target_speed)[0]
-            panel.plot(chosen * scenario.T, claims, ls=(0, (4, 3)), lw=1.3, color=_LIAR, zorder=4, label=told)
+            panel.plot(chosen * scenario.T, claims, ls=(0, (4, 3)), lw=1.0, color=LIAR_COLOR, zorder=1.5, label=told)
 
 
 def _faces(scenario: Scenario, label: object, sent: Floats) -> Iterator[tuple[int, str]]:
@@ -209,10 +231,7 @@ def _faces(scenario: Scenario, label: object, sent: Floats) -> Iterator[tuple[in
 
 def _steps(run: Run, last_step: int | None) -> Any:
     """Return the steps to draw, thinned to what a picture can show, even and odd ones alike; up to a divergence."""
-    states = len(recorded(run).p)
-    end = states if last_step is None else min(states, last_step + 1)
-    if run.outcome.diverged_at is not None:
-        end = min(end, run.outcome.diverged_at + 1)
+    end = last_step_shown(run.outcome, last_step) + 1
     pairs = np.arange(0, end, 2 * max(1, end // 2000))
     return np.unique(np.minimum(np.concatenate([pairs, pairs + 1]), end - 1))
 

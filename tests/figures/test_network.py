@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -197,6 +199,57 @@ class TestPlaces:
         places = positions_in(rb.read_topology("topohub:sndlib/abilene"))
         assert places is not None
         assert len(set(places.values())) == 12
+
+
+class TestNames:
+    @pytest.mark.parametrize(
+        "graph",
+        [
+            nx.relabel_nodes(nx.cycle_graph(9), lambda k: f"Truck {k}"),
+            nx.relabel_nodes(nx.star_graph(12), lambda k: f"station {k}"),
+            nx.relabel_nodes(nx.grid_graph((4, 3)), lambda place: f"row {place[0]} {place[1]}"),
+            nx.path_graph(["a", "a very long name of a node"]),
+            nx.path_graph(["nobody else"]),
+        ],
+    )
+    def test_no_name_covers_a_node_or_a_name(self, graph: nx.Graph) -> None:
+        figure = new_figure(8, 6)
+        ax = rb.draw(graph, ax=figure.subplots())
+        figure.draw_without_rendering()
+        boxes = [text.get_window_extent() for text in ax.texts]
+        assert sorted(text.get_text() for text in ax.texts) == sorted(map(str, graph))
+        assert [(one.bounds, two.bounds) for one, two in combinations(boxes, 2) if one.overlaps(two)] == []
+        nodes = next(each for each in ax.collections if isinstance(each, PathCollection))
+        centres = ax.transData.transform(nodes.get_offsets())
+        radius = nodes.get_sizes()[0] ** 0.5 / 2 * figure.dpi / 72
+        for box in boxes:
+            for x, y in centres:
+                across = max(box.x0 - x, 0, x - box.x1)
+                up = max(box.y0 - y, 0, y - box.y1)
+                assert (across**2 + up**2) ** 0.5 > 0.9 * radius
+
+    def test_short_names_stand_on_their_nodes(self) -> None:
+        ax = rb.draw(PETERSEN, ax=axes())
+        assert {tuple(text.get_position()) for text in ax.texts} == {tuple(text.xy) for text in ax.texts}
+
+
+class TestShape:
+    @pytest.mark.parametrize(("wide", "tall"), [(1800, 30), (700, 100), (300, 100), (100, 100), (100, 400), (5, 0)])
+    def test_a_map_has_the_shape_of_the_map_within_reason(self, wide: float, tall: float, tmp_path: Path) -> None:
+        corners = {0: (0, 0), 1: (wide, 0), 2: (wide, tall), 3: (0, tall)}
+        path = tmp_path / "map.svg"
+        draw_to_file(nx.cycle_graph(4), None, path, pos=corners)
+        sides = [re.findall(rf'<svg [^>]*?{side}="([\d.]+)pt"', path.read_text()) for side in ("width", "height")]
+        width, height = (float(found[0]) for found in sides)
+        asked = min(max(wide / tall if tall else 99, 0.6), 3.0)
+        assert 0.4 < width / height / asked < 2.5
+        assert width / height > 0.9
+
+    def test_nobody_is_told_apart_where_no_set_is_marked(self) -> None:
+        assert rb.draw(PETERSEN, ax=axes()).get_legend() is None
+        mended = rb.mend(nx.cycle_graph(5), 2)
+        told = [text.get_text() for text in rb.draw(mended.graph, mended, ax=axes()).get_legend().get_texts()]
+        assert told == ["link added"]
 
 
 class TestNotebooks:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,8 @@ from cli.main import robustness
 from robustness.errors import InvalidParameter, MissingExtra
 from robustness.figures.animation import animate
 from robustness.figures.simulation import Run, draw_outcome, draw_runs
+from robustness.figures.time_span import last_step_shown
+from robustness.files import write_topology
 from robustness.simulation import ADVERSARIES, find_attack, random_start
 from robustness.simulation import simulate as simulate_batch
 from robustness.simulation.scenario import Scenario
@@ -183,6 +186,91 @@ class TestPlot:
         outcome = find_attack(graph, 1, "delayed").attack.run(9, record=True)
         draw_runs([run_of(outcome)], tmp_path / "x.svg")
         animate(run_of(outcome), tmp_path / "x.gif")
+
+
+class TestWhereItEnds:
+    """Every picture and film ends a while after the motion, and where the user says."""
+
+    @staticmethod
+    def last_step(ax: Any) -> float:
+        return max(line.get_xdata()[-1] for line in ax.lines if len(line.get_xdata()))
+
+    @pytest.mark.parametrize("rule", ["w-msr", "dp-msr"])
+    def test_after_the_motion(self, rule: str) -> None:
+        short, long = (rb.simulate(K5, rule, steps=steps, seed=1) for steps in (200, 2000))
+        shown = [last_step_shown(each) for each in (short, long)]
+        assert shown[0] == shown[1] < 150
+        p = long.trajectory.p
+        normal = [i for i, label in enumerate(long.scenario.network.union.labels) if label not in long.start.malicious]
+        assert np.ptp(p[shown[1], normal]) <= 0.02 * np.ptp(p[0, normal])
+        ax = long.plot(ax=axes())
+        assert self.last_step(ax) == shown[1]
+        assert ax.get_xlabel() == "step k (the run has 2000 steps)"
+
+    def test_what_never_rests_is_shown_whole(self) -> None:
+        outcome = rb.simulate(K5, lambda own, heard: own + 1.0, steps=90)
+        ax = outcome.plot(ax=axes())
+        assert self.last_step(ax) == 90
+        assert ax.get_xlabel() == "step k"
+
+    def test_what_never_moves_is_short(self) -> None:
+        assert last_step_shown(find_attack(WHEEL, 1, "delayed").attack.run(500, record=True)) == 20
+
+    def test_what_is_asked_for(self, tmp_path: Path) -> None:
+        outcome = rb.simulate(K5, steps=300)
+        assert self.last_step(outcome.plot(ax=axes(), last_step=7)) == 7
+        assert self.last_step(outcome.plot(ax=axes(), last_step=10**6)) == 300
+        animate(run_of(outcome), tmp_path / "film.gif", last_step=7)
+        with Image.open(tmp_path / "film.gif") as film:
+            assert film.n_frames == 8
+
+    def test_on_the_command_line(self, tmp_path: Path) -> None:
+        graph, film = str(tmp_path / "g.json"), str(tmp_path / "film.gif")
+        write_topology(K5, graph)
+        run = CliRunner().invoke
+        assert run(robustness, ["simulate", graph, "--animate", film, "--last-step", "7"]).exit_code == 0
+        with Image.open(film) as made:
+            assert made.n_frames == 8
+        refused = run(robustness, ["simulate", graph, "--last-step", "7"])
+        assert refused.exit_code == 2
+        assert "--last-step says where --plot or --animate ends" in refused.output
+
+
+class TestToldApart:
+    def test_groups_that_are_near_have_labels_of_their_own(self) -> None:
+        outcome = find_attack(WHEEL, 1, "delayed").attack.run(5, record=True)
+        near = replace(outcome, groups=((46.94471, (1, 4)), (46.94472, (2, 3))))
+        told = [text.get_text() for text in near.plot(ax=axes()).get_legend().get_texts()]
+        assert told[:2] == ["{1, 4} at 46.94471", "{2, 3} at 46.94472"]
+
+    def test_what_a_liar_says_lies_behind_the_curves(self) -> None:
+        ax = rb.simulate(K5, malicious=[4], adversary="sine", steps=60).plot(ax=axes())
+        claims = [line for line in ax.lines if "says" in str(line.get_label())]
+        assert claims
+        assert max(line.get_zorder() for line in claims) < min(
+            line.get_zorder() for line in ax.lines if line.get_label() == "_"
+        )
+
+    def test_lanes_of_a_film_are_in_natural_order_from_the_top(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        drawn: list[Figure] = []
+
+        def kept(width: float, height: float) -> Figure:
+            drawn.append(Figure(figsize=(width, height), layout="constrained"))
+            return drawn[-1]
+
+        monkeypatch.setattr("robustness.figures.animation.new_figure", kept)
+        graph = nx.relabel_nodes(nx.complete_graph(12), lambda k: f"n{k}")
+        outcome = rb.simulate(graph, malicious=["n11"], steps=10)
+        animate(run_of(outcome), tmp_path / "film.gif")
+        (ax,) = drawn[0].axes
+        assert [text.get_text() for text in ax.get_yticklabels()] == [f"n{k}" for k in range(12)]
+        assert ax.yaxis_inverted()
+        dots, crosses = ax.collections
+        assert [y for _, y in crosses.get_offsets()] == [11]
+        assert sorted(y for _, y in dots.get_offsets()) == list(range(11))
+        assert "cross: what {n11} claims" in ax.get_xlabel()
 
 
 class TestFilms:
