@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 import time
 from collections.abc import Callable, Iterable
@@ -157,6 +158,7 @@ def run_survey(
 ) -> tuple[Survey, bool]:
     """Return the survey of the networks and whether it was interrupted; then it holds the rows that were finished."""
     from robustness.surveying import Survey, survey
+    from robustness.surveying.networks import Sources, expand
 
     line = _Line(console)
 
@@ -181,7 +183,12 @@ def run_survey(
     try:
         return interruptibly(work, None, line.tick), False
     except KeyboardInterrupt:
-        return Survey(tuple(line.rows), networks.models), True
+        # Threads finish in any order: the rows are put in that of the networks, and those left out are named.
+        rows = {row.network: row for row in line.rows}
+        asked = expand(networks.paths) if rows else Sources((), ())
+        finished = tuple(rows[name] for name in asked.names if name in rows)
+        missing = tuple(name for name in asked.names if name not in rows)
+        return Survey(finished, networks.models, asked.notes, missing), True
     finally:
         line.wipe()
 
@@ -225,8 +232,8 @@ class _Line:
         if self._is_shown:
             from robustness.printable import printable
 
-            spent = time.monotonic() - self._started
-            click.echo(f"\r\x1b[K{printable(f'{spent:.0f} s, {self._text}')[:100]}", err=True, nl=False)
+            text = printable(f"{time.monotonic() - self._started:.0f} s, {self._text}")
+            click.echo(f"\r\x1b[K{text[: shutil.get_terminal_size().columns - 1]}", err=True, nl=False)
 
     def wipe(self) -> None:
         """Take the line away."""

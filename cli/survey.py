@@ -58,6 +58,7 @@ def command(
     network: 0 all pass, 30 some undecided, 10 some refuted, 3 some unreadable. --timeout is for one network.
     """
     from robustness.files.writing import replace_file, require_different_files
+    from robustness.reporting.wording import headline
     from robustness.surveying.tables import TABLES
 
     require_different_files(networks.paths, [output, state])
@@ -66,7 +67,7 @@ def command(
     for note in found.notes:
         console.warn(note)
     kind = kind or ("table" if output is None else _KINDS.get(output.suffix.lower(), "table"))
-    content = TABLES[kind](found.rows, found.models)
+    content = TABLES[kind](found.listed, found.models)
     written = []
     if output is not None:
         replace_file(output, content.encode())
@@ -75,9 +76,9 @@ def command(
         is_complete = not is_interrupted and not found.missing
         console.document(SCHEMA, found.as_dict() | {"is_complete": is_complete})
     elif output is None and console.is_quiet and kind == "table":
-        from robustness.reporting.wording import headline
-
         console.result(headline(found, networks.gate))
-    elif output is None:
-        console.result(content.rstrip("\n"))
+    else:
+        if output is None:
+            console.result(content.rstrip("\n"))
+        console.talk(headline(found, networks.gate))
     ctx.exit(exit_code(console, found, is_interrupted, written))

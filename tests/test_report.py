@@ -24,8 +24,9 @@ from cli.main import robustness
 from robustness.files import write_topology
 from robustness.reporting import Report
 from robustness.reporting.front import report_of
-from robustness.reporting.wording import headline
+from robustness.reporting.wording import headline, in_words
 from robustness.surveying import Row, Survey
+from robustness.threat_models import THREAT_MODELS
 
 pytest.importorskip("matplotlib")
 
@@ -75,21 +76,68 @@ def made() -> Report:
 class TestWords:
     def test_what_a_manager_reads_first(self, made: Report) -> None:
         assert headline(made.survey, rb.Gate(survive=1)) == (
-            "2 of 4 networks survive 1 malicious node under every threat model; 2 do not, each with a counterexample."
+            "2 of 4 networks survive 1 malicious node under every threat model; 2 fail, each with a counterexample."
         )
         assert "A network of 7 nodes and 21 links." in Tags(made.html).text
 
     def test_all_pass(self) -> None:
         graphs = {"a": nx.complete_graph(7), "b": nx.complete_graph(8)}
         text = Tags(rb.report(graphs, gate=rb.Gate(r=3), models=["malicious"], pictures=False).html).text
-        assert "All 2 networks are (3,1)-robust." in text
+        assert "Both networks are (3,1)-robust." in text
 
     def test_a_limit_and_a_file_that_cannot_be_read_are_said(self, tmp_path: Path) -> None:
         (tmp_path / "broken.json").write_text("{")
         made = rb.report([tmp_path / "broken.json"], gate=rb.Gate(survive=1), pictures=False)
-        assert "0 of 1 networks survive 1 malicious node under every threat model; 1 could not be read." in made.html
+        assert "The network must survive 1 malicious node under every threat model; it could not be read." in made.html
         cut = rb.report({"a": nx.complete_graph(4)}, total_time_limit=1e-9, gate=rb.Gate(survive=1), pictures=False)
-        assert "1 were not decided within the limit: nothing is claimed about them" in cut.html
+        assert "that was not decided within the limit: nothing is claimed." in cut.html
+
+    @pytest.mark.parametrize(
+        ("gates", "models", "words"),
+        [
+            (
+                ["passed"],
+                ["delayed"],
+                "The network is (2,1)-robust and survives 1 malicious node under the threat model delayed.",
+            ),
+            (["refuted"], [], "The network must be (2,1)-robust and survive 1 malicious node under "),
+            (
+                ["passed"] * 3,
+                ["delayed", "malicious"],
+                "All 3 networks are (2,1)-robust and survive 1 malicious node under the threat models "
+                "delayed and malicious.",
+            ),
+            (["passed", "refuted"], [], "1 of 2 networks is (2,1)-robust and survives"),
+            (["refuted", "error", "error"], [], "None of 3 networks are"),
+            (["refuted", "error", "error"], [], "; 1 fails, with a counterexample; 2 could not be read."),
+            (
+                ["passed", "undecided", "refuted", "refuted"],
+                [],
+                "; 2 fail, each with a counterexample; 1 was not decided within the limit: nothing is claimed about "
+                "it.",
+            ),
+        ],
+    )
+    def test_numbers_and_models_are_told_as_they_are(self, gates: list[str], models: list[str], words: str) -> None:
+        asked = tuple(models or THREAT_MODELS)
+        found = Survey(tuple(Row(str(k), gate=gate) for k, gate in enumerate(gates)), asked)
+        told = headline(found, rb.Gate(r=2, survive=1))
+        assert words in told
+        assert ("under every threat model" in told) == (not models)
+
+    @pytest.mark.parametrize(
+        ("guaranteed", "refuted", "words"),
+        [
+            (0, 1, "It survives no malicious node."),
+            (2, 3, "It survives 2 malicious nodes."),
+            (1, 3, "It survives at least 1 malicious node; how many more is not known."),
+            (-1, 0, "It does not even agree when nobody lies."),
+            (-1, 1, "That it agrees at all was not proven."),
+        ],
+    )
+    def test_no_more_is_said_than_is_known(self, guaranteed: int, refuted: int, words: str) -> None:
+        row = Row("x", 5, 8, False, 1, 1, 1, 1, {"delayed": guaranteed}, {"delayed": refuted})
+        assert words in in_words(row, ["delayed"])
 
 
 class TestShown:
@@ -366,6 +414,35 @@ class TestInABrowser:
         page.execute_script("document.querySelectorAll('details').forEach((part) => { part.open = true; })")
         assert page.execute_script("return document.documentElement.scrollWidth") <= 360
         page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+    @pytest.mark.parametrize(("width", "medium"), [(1280, "screen"), (1024, "screen"), (700, "print")])
+    def test_the_verdict_of_every_network_is_in_sight(self, page: Any, width: int, medium: str) -> None:
+        page.execute_cdp_cmd(
+            "Emulation.setDeviceMetricsOverride",
+            {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False},
+        )
+        page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": medium})
+        wide = "return arguments[0].getBoundingClientRect().right"
+        cells = page.find_elements("css selector", "table.networks td.passed, table.networks td.refuted")
+        assert len(cells) == 4
+        assert max(page.execute_script(wide, cell) for cell in cells) < width / 2
+        if width != 1024:  # nothing else is cut off either
+            assert page.execute_script(wide, page.find_element("css selector", "table.networks")) <= width
+        page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+        page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+    def test_a_part_says_how_its_network_stands_and_what_it_survives(self, page: Any) -> None:
+        parts = page.find_elements("css selector", "details.network")
+        assert [part.find_element("css selector", ".standing").text for part in parts] == [
+            "refuted", "passed", "refuted", "passed"
+        ]  # fmt: skip
+        page.find_element("link text", "complete").click()
+        numbers = [
+            [each.text for each in line.find_elements("css selector", "td")]
+            for line in parts[1].find_elements("css selector", "table.models tbody tr")
+        ]
+        known = rb.tolerance(nx.complete_graph(7))
+        assert numbers == [[str(result.guaranteed), str(result.refuted)] for result in known.results]
 
     @pytest.mark.parametrize("scheme", ["light", "dark"])
     def test_letters_stand_out_from_the_ground(self, page: Any, scheme: str) -> None:

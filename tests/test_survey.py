@@ -18,9 +18,12 @@ import pytest
 from click.testing import CliRunner, Result
 
 import robustness as rb
+from cli import many_networks
 from cli.main import robustness
+from cli.output import Console
 from robustness.files import write_topology
 from robustness.surveying.networks import expand
+from robustness.surveying.row import Row
 from robustness.surveying.state import Journal
 from robustness.surveying.tables import TABLES
 
@@ -61,6 +64,32 @@ def test_graphs_by_name_in_pairs_and_bare() -> None:
     for graphs, name in (({"w": wheel}, "w"), ([("w", wheel)], "w"), ([wheel], "0")):
         (row,) = rb.survey(graphs, models=[])
         assert (row.network, row.r, row.guaranteed) == (name, 2, {})
+
+
+def test_names_are_text_and_each_network_has_its_own(folder: Path) -> None:
+    path = folder / "net2.json"
+    found = rb.survey({1: nx.path_graph(3), ("a", 2): nx.path_graph(4), "file": path}, models=[])  # type: ignore[dict-item]
+    assert [(row.network, row.nodes) for row in found] == [("1", 3), ("('a', 2)", 4), ("file", 7)]
+    assert "('a', 2)" in str(found)
+    for same in ([("a", nx.path_graph(3)), ("a", nx.path_graph(4))], {1: nx.path_graph(3), "1": nx.path_graph(4)}):
+        with pytest.raises(rb.InvalidParameter, match="two networks are named"):
+            rb.survey(same)
+    twice = rb.survey([path, str(path), path.parent], models=[])
+    assert [Path(row.network).name for row in twice] == ["net2.json", "path.json", "net10.json"]
+    assert sum("asked for twice, surveyed once" in note for note in twice.notes) == 2
+
+
+@pytest.mark.parametrize("one", [nx.wheel_graph(5), rb.from_edges([(0, 1)], directed=False), 5, None])
+def test_one_graph_is_not_many(one: object) -> None:
+    with pytest.raises(rb.InvalidParameter, match="a survey is about many networks, not "):
+        rb.survey(one)  # type: ignore[arg-type]
+
+
+def test_what_is_no_graph_is_never_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_topology(nx.path_graph(3), "0.json")
+    (row,) = rb.survey([None], reading=rb.files.ReadingOptions(format=".json"))
+    assert "not NoneType" in row.error
 
 
 @pytest.mark.parametrize(
@@ -156,12 +185,19 @@ class TestState:
         state.write_bytes(whole[:-7])
         assert len(rb.survey([folder], models=[], state=state)) == 3
         assert state.read_bytes().count(b"\n") == 3
+        first = whole.splitlines()[0]
+        for kept in (0, 1, 16, 17, 18, 22, len(first) // 2, len(first)):
+            state.write_bytes(first[:kept])
+            assert len(rb.survey([folder], models=[], state=state)) == 3
+            assert state.read_bytes().count(b"\n") == 3
         state.write_bytes(whole.replace(b'"r": ', b'"r": 1', 1))
         with pytest.raises(rb.UnreadableTopology, match="line 1: not a line of a survey's journal"):
             Journal(state)
-        state.write_text("something else\n", encoding="utf-8")
-        with pytest.raises(rb.UnreadableTopology, match="line 1"):
-            Journal(state)
+        for other in ("something else\n", "some words", "cafe au lait", "0123456789abcdef {}"):
+            state.write_text(other, encoding="utf-8")
+            with pytest.raises(rb.UnreadableTopology, match="line 1"):
+                Journal(state)
+            assert state.read_text(encoding="utf-8") == other
 
     @pytest.mark.parametrize("ending", [signal.SIGKILL, signal.SIGINT])
     def test_a_killed_run_goes_on_where_it_was(self, ending: signal.Signals, tmp_path: Path) -> None:
@@ -185,7 +221,9 @@ class TestState:
             out, _ = process.communicate(timeout=60)
         if ending is signal.SIGINT:
             assert process.returncode == 130
-            assert len(json.loads(out)["rows"]) == 4
+            told = json.loads(out)
+            assert [Path(row["network"]).stem for row in told["rows"]] == ["0", "1", "2", "3"]
+            assert [Path(name).stem for name in told["missing"]] == ["9"]
         os.unlink(nets / "9.json")
         before = state.read_bytes()
         assert len(rb.survey([nets], models=[], state=state)) == 4
@@ -207,11 +245,44 @@ class TestTables:
         assert [line["network"] for line in lines] == [self.EVIL, "plain"]
         assert {line["schema"] for line in lines} == {"robustness/survey-row/1"}
 
-    def test_junit_is_xml_with_a_failure_for_a_refuted_gate(self) -> None:
-        found = self.rows()
-        suite = ET.fromstring(TABLES["junit"](found.rows, found.models))  # noqa: S314 - our own
-        assert (suite.get("tests"), suite.get("failures"), suite.get("errors")) == ("2", "1", "0")
-        assert [case.find("failure") is not None for case in suite] == [True, False]
+    def test_junit_has_a_failure_for_a_refuted_gate_and_an_error_for_what_was_not_asked(self) -> None:
+        asked = self.rows()
+        rows = (*asked.rows, Row("gone.json", gate="error", error="no such file"))
+        found = rb.surveying.Survey(rows, asked.models, missing=("late",))
+        suite = ET.fromstring(TABLES["junit"](found.listed, found.models))  # noqa: S314 - our own
+        assert suite.tag == "testsuite"
+        assert {name: suite.get(name) for name in ("tests", "failures", "errors", "skipped")} == {
+            "tests": "4", "failures": "1", "errors": "2", "skipped": "0"
+        }  # fmt: skip
+        assert float(suite.get("time", "")) >= max(float(case.get("time", "")) for case in suite)
+        assert {case.tag for case in suite} == {"testcase"}
+        outcomes = [[(each.tag, each.get("type")) for each in case] for case in suite]
+        out = ("system-out", None)
+        assert outcomes == [
+            [("failure", "refuted"), out], [out], [("error", "unreadable")], [("error", "not reached")]
+        ]  # fmt: skip
+        (failure,) = suite.iter("failure")
+        assert failure.text is not None
+        assert failure.text.startswith("weakest pair: no node of S1 = {")
+        assert failure.text.endswith("hears 3 nodes outside its set")
+
+    def test_every_table_has_a_row_for_what_was_not_reached(self) -> None:
+        whole = self.rows()
+        found = rb.surveying.Survey(whole.rows[1:], whole.models, missing=("late",))
+        for kind, write in TABLES.items():
+            text = write(found.listed, found.models)
+            assert "late" in text, kind
+            assert "not reached before the survey ended" in text, kind
+        assert "late" in str(found)
+        assert "late" in found._repr_html_()
+        assert [row.gate for row in found.listed] == ["passed", "undecided"]
+
+    def test_a_frame_has_its_columns_without_rows_too(self) -> None:
+        pytest.importorskip("pandas")
+        whole = self.rows()
+        late = rb.surveying.Survey(whole.rows, whole.models, missing=("late",)).to_frame()
+        assert list(late["network"]) == [self.EVIL, "plain", "late"]
+        assert list(rb.surveying.Survey((), whole.models).to_frame().columns) == list(late.columns)
 
     def test_text_markdown_and_html_cannot_be_steered(self) -> None:
         found = self.rows()
@@ -259,6 +330,28 @@ def test_links_that_mend_are_told_where_asked() -> None:
     for wrong in (-1.0, float("nan"), float("inf")):
         with pytest.raises(rb.InvalidParameter, match="mending is a number of seconds"):
             rb.survey(networks, mending=wrong)
+
+
+def test_the_verdict_in_words_follows_the_table(folder: Path, tmp_path: Path) -> None:
+    for more in ([], ["-o", tmp_path / "rows.csv"]):
+        assert (
+            "2 of 3 networks are (2,1)-robust; 1 fails, with a counterexample."
+            in run(folder, "--no-models", "-r", 2, *more).stderr
+        )
+    assert run(folder, "--no-models", "-r", 2, "--json").stderr.count("\n") == 1  # what was passed over
+
+
+@pytest.mark.parametrize("columns", [20, 80])
+def test_progress_stays_on_one_line_of_the_terminal(
+    columns: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    monkeypatch.setenv("COLUMNS", str(columns))
+    line = many_networks._Line(Console())
+    line.note(Row("a/long/" * 30), 1, 2)
+    line.tick()
+    shown = capsys.readouterr().err.rpartition("\x1b[K")[2]
+    assert 15 < len(shown) < columns
 
 
 def test_quiet_is_one_line(folder: Path) -> None:

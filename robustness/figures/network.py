@@ -16,7 +16,7 @@ from robustness.figures.marking import Marks, marks_of
 from robustness.figures.naming import write_names
 from robustness.figures.placement import Positions, positions_for, positions_in
 from robustness.figures.saving import new_figure, save_figure
-from robustness.figures.wording import plain
+from robustness.figures.wording import name_on_picture, plain
 from robustness.showing import Shown
 from robustness.time_varying import TimeVaryingGraph
 
@@ -91,7 +91,7 @@ def draw(
         except ImportError:
             raise MissingExtra("drawing needs matplotlib: pip install 'graph-robustness[plot]'") from None
         ax = plt.subplots(figsize=_size(graph, places, is_map), layout="constrained")[1]
-    _draw_on(ax, graph, marks, places, _size(graph, places, is_map))
+    _draw_on(ax, graph, marks, places, _size_around(ax))
     if not is_map:
         # Circles of ours stay circles, in a picture that is filled, so that no node of a flat one is cut off; maps and
         # users' places fill a picture of their shape.
@@ -130,6 +130,13 @@ def _size(graph: Digraph, places: Positions, is_map: bool) -> tuple[float, float
     return side * max(1.35, shape**0.75) + 0.5, side * min(1.35, shape**-0.25)
 
 
+def _size_around(axes: Axes) -> tuple[float, float]:
+    """Return the width and height in inches of a picture that has axes of this size alone."""
+    figure: Any = axes.figure
+    extent = axes.get_window_extent().transformed(figure.dpi_scale_trans.inverted())
+    return float(extent.width) / 0.775, float(extent.height) / 0.77
+
+
 def _draw_on(axes: Axes, graph: Digraph, marks: Marks, places: Positions, shape: tuple[float, float]) -> None:
     """Draw arcs first, then nodes, then names, then what everything means."""
     picture = nx.DiGraph()
@@ -138,7 +145,7 @@ def _draw_on(axes: Axes, graph: Digraph, marks: Marks, places: Positions, shape:
     size = _node_size(places, shape)
     _draw_arcs(axes, picture, graph, marks, places, size)
     handles = [_draw_group(axes, picture, name, group, places, size) for name, group in _groups(graph, marks)]
-    write_names(axes, {i: plain(label) for i, label in enumerate(graph.labels)}, places, size, shape)
+    write_names(axes, {i: name_on_picture(label) for i, label in enumerate(graph.labels)}, places, size, shape)
     if marks.title:
         axes.set_title(plain(marks.title), fontsize=11, wrap=True)
     axes.set_axis_off()

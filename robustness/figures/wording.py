@@ -7,7 +7,10 @@ from collections.abc import Iterable
 from robustness.natural_order import in_natural_order
 from robustness.showing import listed_in_words
 
-__all__ = ["nodes_in_words", "plain"]
+__all__ = ["name_on_picture", "nodes_in_words", "plain"]
+
+#: Letters of a node's name on a picture; longer ones run over the whole of it.
+_LONGEST_NAME = 32
 
 
 def plain(text: object) -> str:
@@ -18,6 +21,16 @@ def plain(text: object) -> str:
     """
     shown = "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in str(text))
     return shown.replace("$", r"\$")
+
+
+def name_on_picture(label: object) -> str:
+    """Return a node's name, cut where it would cover other nodes; the answers themselves have it whole.
+
+    >>> name_on_picture("n10"), name_on_picture("a" * 99)
+    ('n10', 'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa…')
+    """
+    text = str(label)
+    return plain(text if len(text) <= _LONGEST_NAME else text[: _LONGEST_NAME - 1] + "…")
 
 
 def nodes_in_words(labels: Iterable[object], most: int = 8) -> str:

@@ -9,7 +9,7 @@ from robustness.reporting.section import Film
 __all__ = ["film_html"]
 
 _WIDTH, _HEIGHT = 640, 240
-_LEFT, _RIGHT, _TOP, _BOTTOM = 46, 10, 12, 30
+_LEFT, _RIGHT, _TOP, _BOTTOM = 54, 10, 14, 30
 
 #: Colour, dashes and width of the lines of a group; told apart without colour as well.
 _STYLES = {

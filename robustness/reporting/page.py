@@ -9,8 +9,9 @@ from shlex import quote
 
 from robustness.reporting.film import film_html
 from robustness.reporting.section import Section, as_data_address
-from robustness.reporting.wording import headline, in_words
+from robustness.reporting.wording import headline, in_words, reason
 from robustness.surveying import Gate, Row, Survey
+from robustness.surveying.row import STANDINGS
 from robustness.surveying.tables import cells
 
 __all__ = ["html"]
@@ -58,6 +59,12 @@ _FOOT = (
 )
 
 
+_KEY = (
+    "<p class='faint'>Under each threat model stands the largest f that is survived: 0 when agreement needs everybody "
+    "to be honest, -1 when that does not suffice, 0..2 when 0 is proven, 3 refuted, and the rest was not decided.</p>"
+)
+
+
 def _resource(name: str) -> str:
     return files("robustness.reporting").joinpath(name).read_text(encoding="utf-8")
 
@@ -79,15 +86,18 @@ def _table(survey: Survey, sections: Mapping[str, Section]) -> str:
         f"{_filters(head, [row.network for row in survey.rows])}"
         "<div class='scroll' tabindex='0' role='region' aria-label='networks'>"
         f"<table class='networks'><thead><tr>{names}</tr></thead><tbody>{lines}</tbody></table></div>"
+        + (_KEY if survey.models else "")
     )
 
 
 def _kept(table: list[list[str]], survey: Survey) -> list[list[str]]:
-    """Return the table without the seconds where no row has kept them."""
-    if any(row.seconds for row in survey.rows):
-        return table
-    left_out = table[0].index("seconds")
-    return [line[:left_out] + line[left_out + 1 :] for line in table]
+    """Return the table with the gate beside the name, and without the seconds where no row has kept them."""
+    order = list(range(len(table[0])))
+    if "gate" in table[0]:
+        order.insert(1, order.pop(table[0].index("gate")))
+    if not any(row.seconds for row in survey.rows):
+        order.remove(table[0].index("seconds"))
+    return [[line[k] for k in order] for line in table]
 
 
 def _group(name: str) -> str:
@@ -111,7 +121,7 @@ def _filters(head: Sequence[str], networks: Sequence[str]) -> str:
         )
         + "</fieldset>"
         for k, name in enumerate(head)
-        if _class(name)
+        if "number" in _class(name)
     )
     return (
         f"<details class='filters'><summary>Filter by value</summary><div class='bounds'>{chosen}{bounds}"
@@ -126,7 +136,7 @@ def _head(name: str) -> str:
 
 
 def _class(name: str) -> str:
-    return "" if name in ("network", "gate", "note") else " class='number'"
+    return {"network": "", "gate": "", "note": " class='note'"}.get(name, " class='number'")
 
 
 def _line(k: int, row: Row, line: Sequence[str], head: Sequence[str], section: Section, has_pictures: bool) -> str:
@@ -139,7 +149,8 @@ def _line(k: int, row: Row, line: Sequence[str], head: Sequence[str], section: S
         elif name == "gate":
             shown.append(f"<td class='{escape(cell, quote=True)}'{_values(cell)}>{escape(cell)}</td>")
         else:
-            shown.append(f"<td{_class(name)}{_values(cell)}>{escape(cell)}</td>")
+            told = reason(row) if name == "note" and row.error else cell
+            shown.append(f"<td{_class(name)}{_values(cell)}>{escape(told)}</td>")
     if has_pictures:
         image = f"<img class='thumb' alt='' src='{as_data_address(section.picture)}'>" if section.picture else ""
         shown.append(f"<td>{image}</td>")
@@ -163,19 +174,41 @@ def _part(k: int, row: Row, section: Section, models: Sequence[str]) -> str:
         if section.picture
         else ""
     )
-    sentences = "".join(f"<dt>{escape(name)}</dt><dd>{escape(text)}</dd>" for name, text in section.models)
-    tolerance = f"<h3>What it survives</h3><dl>{sentences}</dl>" if sentences else ""
+    table, sentences = _tolerance(section)
     film = ""
     if section.film is not None:
         played = film_html(section.film).replace("{clip}", f"clip{k}")
         told = f"{escape(section.film.claim)}. {escape(section.film.story)}."
         film = f"<h3>The attack that splits it</h3><p>{told}</p>{played}"
-    sentences = "".join(f"<p>{escape(each)}</p>" for each in section.mending)
-    mending = f"<h3>What would mend it</h3>{sentences}" if sentences else ""
+    proposed = "".join(f"<p>{escape(each)}</p>" for each in section.mending)
+    mending = f"<h3>What would mend it</h3>{proposed}" if proposed else ""
     return (
-        f"<details class='network' id='n{k}'><summary><h2>{escape(row.network)}</h2></summary>"
-        f"<p>{escape(in_words(row, models))}</p>{picture}{tolerance}{film}{mending}"
+        f"<details class='network' id='n{k}'><summary><h2>{escape(row.network)}</h2>{_standing(row)}</summary>"
+        f"<p>{escape(in_words(row, models))}</p><div class='two'>{picture}{table}</div>{sentences}{film}{mending}"
         f"{_evidence(row, section)}</details>\n"
+    )
+
+
+def _standing(row: Row) -> str:
+    return f" <span class='standing {row.gate}'>{row.gate}</span>" if row.gate in STANDINGS else ""
+
+
+def _tolerance(section: Section) -> tuple[str, str]:
+    """Return what is survived under each threat model, in numbers and in sentences."""
+    if not section.models:
+        return "", ""
+    lines = "".join(
+        f"<tr><th scope='row'>{escape(name)}<span class='faint'>{escape(where)}</span></th>"
+        f"<td class='number'>{escape(survived)}</td><td class='number'>{escape(refuted)}</td></tr>"
+        for name, where, survived, refuted in section.models
+    )
+    told = "".join(f"<li>{escape(sentence)}</li>" for sentence in section.told)
+    return (
+        "<div><h3>What it survives</h3><table class='models'><thead><tr><th scope='col'>threat model</th>"
+        "<th scope='col' class='number'>largest f survived</th>"
+        "<th scope='col' class='number'>smallest f that splits it</th></tr></thead>"
+        f"<tbody>{lines}</tbody></table></div>",
+        f"<ul>{told}</ul>",
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from robustness.mending import Goal, MendResult, MendVerdict
+from robustness.reporting.wording import in_models
 from robustness.showing import labels_in_words
 
 __all__ = ["in_sentences"]
@@ -14,16 +15,21 @@ def in_sentences(found: MendResult) -> list[str]:
     if found.verdict is MendVerdict.IMPOSSIBLE:
         return [f"No further links between these nodes give a network that {wish}."]
     if found.cost is None:
-        return [
-            f"At least {found.lower_bound} more links are needed for a network that {wish}; none were found in time."
-        ]
+        least = f"{found.lower_bound} more link{' is' if found.lower_bound == 1 else 's are'} needed"
+        return [f"At least {least} for a network that {wish}; none were found in time."]
     told = f"With {count} more link{'' if count == 1 else 's'} it {wish}"
     if found.verdict is MendVerdict.OPTIMAL:
         told += ". Fewer do not suffice: this is proven."
     else:
-        told += f". At least {found.lower_bound} are needed; more was not proven in time."
+        told += ". " + _at_least(found.lower_bound)
     arrow = "\N{RIGHTWARDS ARROW}" if found.one_way else "\N{EN DASH}"
     return [told, ", ".join(f"{_name(u)} {arrow} {_name(v)}" for u, v in found.links)]
+
+
+def _at_least(count: float) -> str:
+    if count <= 0:
+        return "How few would do was not proven in time."
+    return f"At least {count} {'is' if count == 1 else 'are'} needed; more was not proven in time."
 
 
 def _wish(goals: tuple[Goal, ...]) -> str:
@@ -31,7 +37,7 @@ def _wish(goals: tuple[Goal, ...]) -> str:
     survived = [goal for goal in goals if goal.survive is not None]
     if survived:
         f = survived[0].survive
-        under = f"all {len(survived)} threat models" if len(survived) > 1 else f"the threat model {survived[0].model}"
+        under = in_models([goal.model for goal in survived])
         wishes.append(f"survives {f} malicious node{'' if f == 1 else 's'} under {under}")
     return " and ".join(wishes)
 

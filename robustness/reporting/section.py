@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import warnings
 from base64 import b64encode
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -19,6 +20,7 @@ from robustness.reporting.proposal import in_sentences
 from robustness.simulation.attacks import Attack
 from robustness.surveying.row import Findings
 from robustness.threat_models import ToleranceTable
+from robustness.threat_models.results import number, sentences_of
 
 __all__ = ["Film", "Section", "section_of"]
 
@@ -57,8 +59,10 @@ class Section:
     ----------
     picture : bytes
         An SVG document, or nothing.
-    models : tuple of (str, str)
-        Each threat model and one sentence about it.
+    models : tuple of (str, str, str, str)
+        Each threat model, what it is in words, the largest f that is survived and the smallest that is not.
+    told : tuple of str
+        What is known under the models, in sentences.
     film : Film or None
     mending : tuple of str
         What links would mend it, a sentence and the links; empty when nothing is proposed.
@@ -67,7 +71,8 @@ class Section:
     """
 
     picture: bytes = b""
-    models: tuple[tuple[str, str], ...] = ()
+    models: tuple[tuple[str, str, str, str], ...] = ()
+    told: tuple[str, ...] = ()
     film: Film | None = None
     certificate_digest: str = field(default="")
     mending: tuple[str, ...] = ()
@@ -88,21 +93,40 @@ def section_of(findings: Findings, *, with_pictures: bool, mended: MendResult | 
     row, graph = findings.row, findings.graph
     digest = sha256(Path(row.certificate).read_bytes()).hexdigest() if row.certificate else ""
     mending = () if mended is None else tuple(in_sentences(mended))
-    models = tuple((result.model, result.summary()) for result in findings.table.results)
+    models = tuple(
+        (result.model, result.threat.where, "any" if graph.n < 2 else number(result.guaranteed), number(result.refuted))
+        for result in findings.table.results
+    )
+    told = tuple(sentences_of(findings.table)) if models else ()
     if not with_pictures or not 1 <= graph.n <= _LARGEST:
-        return Section(models=models, certificate_digest=digest, mending=mending)
-    return Section(_picture(graph, row.weakest), models, _film(findings.table), digest, mending)
+        return Section(models=models, told=told, certificate_digest=digest, mending=mending)
+    return Section(_picture(graph, row.weakest), models, told, _film(findings.table), digest, mending)
+
+
+def _size(nodes: int) -> tuple[float, float]:
+    """Return the size of a picture in inches: a page is about ten wide, and few nodes need less."""
+    return (7.2, 4.8) if nodes <= 30 else (9.6, 6.4)
 
 
 def _picture(graph: Digraph, weakest: Mapping[str, Any] | None) -> bytes:
     """Return the network as SVG, the weakest pair marked, where the file places its nodes if it does."""
     from matplotlib import rc_context
 
-    figure = new_figure(7.2, 4.2)
     pair = None if weakest is None else (weakest["S1"], weakest["S2"])
-    draw(graph, pair, ax=figure.subplots())
+    figure = new_figure(*_size(graph.n))
+    axes = figure.subplots()
+    draw(graph, pair, ax=axes)
+    if axes.get_aspect() == 1:  # a layout of ours, that often is flat: no empty ground below it
+        low, high = axes.dataLim.min, axes.dataLim.max
+        share = (high[1] - low[1]) / ((high[0] - low[0]) or 1.0)
+        figure.set_figheight(min(figure.get_figheight(), max(2.2, 0.9 + share * 0.75 * figure.get_figwidth())))
     stream = io.BytesIO()
-    with rc_context({"svg.hashsalt": "robustness", "svg.fonttype": "none", "font.family": "sans-serif"}):
+    with (
+        warnings.catch_warnings(),
+        rc_context({"svg.hashsalt": "robustness", "svg.fonttype": "none", "font.family": "sans-serif"}),
+    ):
+        # The letters stay text that the reader's own fonts show.
+        warnings.filterwarnings("ignore", message="Glyph .* missing from font", category=UserWarning)
         figure.savefig(stream, format="svg", metadata={"Date": None})
     return stream.getvalue()
 
@@ -131,8 +155,9 @@ def _played(attack: Attack, model: str) -> Film:
         }
         for label in in_natural_order(by_label)
     )
-    liars = f"{len(attack.malicious)} malicious node{'s' * (len(attack.malicious) != 1)}"
-    return Film(attack.story(), f"f = {attack.f} under the model {model}: {liars}", lines)
+    count = len(attack.malicious)
+    liars = f"with {count} malicious node{'s' * (count != 1)}" if count else "without a single malicious node"
+    return Film(attack.story(), f"f = {attack.f} under the model {model}, {liars}", lines)
 
 
 def as_data_address(picture: bytes) -> str:

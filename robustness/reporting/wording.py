@@ -6,8 +6,9 @@ from collections import Counter
 from collections.abc import Sequence
 
 from robustness.surveying import Gate, Row, Survey
+from robustness.threat_models import THREAT_MODELS
 
-__all__ = ["headline", "in_words"]
+__all__ = ["headline", "in_models", "in_words", "reason"]
 
 
 def headline(survey: Survey, gate: Gate) -> str:
@@ -17,59 +18,81 @@ def headline(survey: Survey, gate: Gate) -> str:
         return "No network was asked about."
     if gate.r is None and gate.survive is None:
         return _without_gate(survey, total)
-    wanted = " and ".join(_wishes(gate, survey.models))
     counted = Counter(row.gate for row in survey.rows)
     counted["undecided"] += len(survey.missing)
-    if counted["passed"] == total:
-        return f"All {total} networks {wanted}." if total > 1 else f"The network does: it {_third_person(wanted)}."
+    if total == 1:
+        return _about_one(next(name for name, count in counted.items() if count), gate, survey.models)
+    passed = counted["passed"]
+    wanted = _wish(gate, survey.models, "is" if passed == 1 else "are")
+    if passed == total:
+        return f"{'Both' if total == 2 else f'All {total}'} networks {wanted}."
     tails = {
-        "refuted": "do not, each with a counterexample",
-        "undecided": "were not decided within the limit: nothing is claimed about them",
-        "error": "could not be read",
+        "refuted": ("fails, with a counterexample", "fail, each with a counterexample"),
+        "undecided": (
+            "was not decided within the limit: nothing is claimed about it",
+            "were not decided within the limit: nothing is claimed about them",
+        ),
+        "error": ("could not be read", "could not be read"),
     }
-    rest = "; ".join(f"{counted[name]} {tail}" for name, tail in tails.items() if counted[name])
-    return f"{counted['passed']} of {total} networks {wanted}; {rest}."
+    rest = "; ".join(f"{counted[name]} {tail[counted[name] != 1]}" for name, tail in tails.items() if counted[name])
+    return f"{passed or 'None'} of {total} networks {wanted}; {rest}."
 
 
-def _third_person(wanted: str) -> str:
-    return wanted.replace("survive ", "survives ").replace("are ", "is ")
+def _about_one(standing: str, gate: Gate, models: Sequence[str]) -> str:
+    if standing == "passed":
+        return f"The network {_wish(gate, models, 'is')}."
+    told = {
+        "refuted": "it fails, with a counterexample",
+        "undecided": "that was not decided within the limit: nothing is claimed",
+        "error": "it could not be read",
+    }
+    return f"The network must {_wish(gate, models, 'be')}; {told[standing]}."
 
 
-def _wishes(gate: Gate, models: Sequence[str]) -> list[str]:
+def _wish(gate: Gate, models: Sequence[str], be: str) -> str:
+    """Return what a gate asks, with the form of "to be" that tells the number: is, are, or be after an auxiliary."""
     wishes = []
     if gate.r is not None:
-        wishes.append(f"are ({gate.r},{gate.s})-robust")
+        wishes.append(f"{be} ({gate.r},{gate.s})-robust")
     if gate.survive is not None:
-        under = "every threat model" if len(models) > 1 else f"the threat model {', '.join(models)}"
-        wishes.append(f"survive {_nodes(gate.survive)} under {under}")
-    return wishes
+        wishes.append(f"survive{'s' if be == 'is' else ''} {_nodes(gate.survive)} under {in_models(models)}")
+    return " and ".join(wishes)
+
+
+def in_models(models: Sequence[str]) -> str:
+    """Return threat models in words; all of them are not listed.
+
+    >>> in_models(["malicious"]), in_models(["malicious", "delayed"]), in_models(list(THREAT_MODELS))
+    ('the threat model malicious', 'the threat models malicious and delayed', 'every threat model')
+    """
+    if set(models) >= set(THREAT_MODELS):
+        return "every threat model"
+    *first, last = models
+    return f"the threat models {', '.join(first)} and {last}" if first else f"the threat model {last}"
 
 
 def _without_gate(survey: Survey, total: int) -> str:
     read = [row for row in survey.rows if not row.error]
     rest = "" if len(read) == total else f" {total - len(read)} could not be read or were not reached."
     if not survey.models:
-        return f"{len(read)} networks were decided; nothing was required of them.{rest}"
-    least = [min(row.guaranteed.values()) for row in read]
-    survivors = sum(f >= 1 for f in least)
+        told = "1 network was" if len(read) == 1 else f"{len(read)} networks were"
+        return f"{told} looked at; nothing was required of {'it' if len(read) == 1 else 'them'}.{rest}"
+    survivors = sum(min(row.guaranteed.values()) >= 1 for row in read)
+    verb = "survives" if survivors == 1 else "survive"
     return (
-        f"{survivors} of {len(read)} networks survive one malicious node under every threat model that was looked at. "
-        f"Nothing was required of them.{rest}"
+        f"{survivors or 'None'} of {len(read)} network{'s' * (len(read) != 1)} {verb} 1 malicious node under "
+        f"{in_models(survey.models)}. Nothing was required of {'it' if len(read) == 1 else 'them'}.{rest}"
     )
 
 
 def in_words(row: Row, models: Sequence[str]) -> str:
     """Return what is known about one network in a few sentences."""
     if row.error:
-        return f"It could not be read: {row.error}"
+        return f"It could not be read: {reason(row)}"
     kind = "directed " if row.directed else ""
     links = f"{row.arcs} arcs" if row.directed else f"{(row.arcs or 0) // 2} links"
     sentences = [f"A {kind}network of {row.nodes} nodes and {links}.", _robustness(row)]
-    guaranteed = [f for f in (row.guaranteed.get(model) for model in models) if f is not None]
-    if guaranteed:
-        low, high = min(guaranteed), max(guaranteed)
-        promised = _nodes(low) if low == high else f"{max(low, 0)} to {high} malicious nodes, depending on the model"
-        sentences.append("It does not even agree when nobody lies." if high < 0 else f"It survives {promised}.")
+    sentences.append(_tolerance(row, models))
     if row.gate:
         sentences.append(
             {
@@ -79,6 +102,27 @@ def in_words(row: Row, models: Sequence[str]) -> str:
             }.get(row.gate, "")
         )
     return " ".join(filter(None, sentences))
+
+
+def reason(row: Row) -> str:
+    """Return why a row has no facts, without its own name before it."""
+    return row.error.removeprefix(f"{row.network}: ")
+
+
+def _tolerance(row: Row, models: Sequence[str]) -> str:
+    guaranteed = {model: row.guaranteed[model] for model in models if model in row.guaranteed}
+    if not guaranteed:
+        return ""
+    if (row.nodes or 0) < 2:
+        return "Fewer than two nodes cannot disagree."
+    low, high = min(guaranteed.values()), max(guaranteed.values())
+    is_decided = all(row.refuted.get(model) == f + 1 for model, f in guaranteed.items())
+    if high < 0:
+        return "It does not even agree when nobody lies." if is_decided else "That it agrees at all was not proven."
+    promised = _nodes(low) if low == high else f"{max(low, 0)} to {high} malicious nodes, depending on the model"
+    if is_decided:
+        return f"It survives {promised}." if high else "It survives no malicious node."
+    return f"It survives at least {promised}; how many more is not known."
 
 
 def _robustness(row: Row) -> str:

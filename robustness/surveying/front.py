@@ -19,8 +19,8 @@ from robustness.files import ReadingOptions
 from robustness.files.front import read_with
 from robustness.surveying import tables
 from robustness.surveying.mended import seconds_for_mending, with_links
-from robustness.surveying.networks import expand
-from robustness.surveying.row import STANDINGS, Findings, Gate, Question, Row, measure, unreadable
+from robustness.surveying.networks import expand, note_of_twice
+from robustness.surveying.row import NOT_REACHED, STANDINGS, Findings, Gate, Question, Row, measure, unreadable
 from robustness.surveying.state import Journal, key_of
 from robustness.threat_models import THREAT_MODELS
 from robustness.threat_models.models import threat_model_named
@@ -65,6 +65,12 @@ class Survey:
         standings += ["undecided"] * len(self.missing)
         return max(standings, key=STANDINGS.index, default="passed")
 
+    @property
+    def listed(self) -> tuple[Row, ...]:
+        """The rows, and after them one for each network that was not reached, which says so: what tables show."""
+        standing = "undecided" if any(row.gate for row in self.rows) else ""
+        return self.rows + tuple(Row(name, gate=standing, error=NOT_REACHED) for name in self.missing)
+
     def as_dict(self) -> dict[str, Any]:
         """Return everything as JSON-ready values."""
         return {
@@ -76,7 +82,7 @@ class Survey:
         }
 
     def to_frame(self) -> Any:
-        """Return the rows as a pandas DataFrame, one column for each fact.
+        """Return the rows as a pandas DataFrame, one column for each fact, with a row for each network in ``missing``.
 
         Raises
         ------
@@ -87,16 +93,17 @@ class Survey:
             pandas = importlib.import_module("pandas")
         except ImportError:
             raise MissingExtra("to_frame needs the package pandas: install it with: pip install pandas") from None
-        return pandas.DataFrame([tables.flat(row, self.models) for row in self.rows])
+        columns = list(tables.flat(Row(""), self.models))
+        return pandas.DataFrame([tables.flat(row, self.models) for row in self.listed], columns=columns)
 
     def __str__(self) -> str:
-        return tables.text(self.rows, self.models)
+        return tables.text(self.listed, self.models)
 
     def __repr__(self) -> str:
         return f"<Survey: {len(self.rows)} network{'s' * (len(self.rows) != 1)}, {self.worst}>"
 
     def _repr_html_(self) -> str:
-        head, *body = tables.cells(self.rows, self.models)
+        head, *body = tables.cells(self.listed, self.models)
         rows = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in body)
         names = "".join(f"<th>{html.escape(cell)}</th>" for cell in head)
         return f"<table><thead><tr>{names}</tr></thead><tbody>{rows}</tbody></table>"
@@ -127,6 +134,7 @@ def survey(
     graphs : iterable or mapping
         Graphs as everywhere; paths, folders, patterns and ``topohub:GROUP/*`` as text, which
         :func:`robustness.surveying.networks.expand` explains; ``(name, graph)`` pairs; or a mapping from name to graph.
+        A graph with a name may be a path too. A source that is named twice is surveyed once.
     models : iterable of str, optional
         Threat models to look at, names in ``THREAT_MODELS``; all unless given.
     gate : Gate, optional
@@ -162,7 +170,7 @@ def survey(
     Raises
     ------
     InvalidParameter
-        For an unknown model, and numbers out of range.
+        For an unknown model, numbers out of range, one graph in place of many, and two graphs of one name.
     UnreadableTopology
         For a folder or pattern that holds no network, and a damaged journal.
 
@@ -196,23 +204,31 @@ def survey(
 
 
 def _named(graphs: Iterable[Any] | Mapping[str, GraphLike]) -> tuple[list[tuple[str, Any]], tuple[str, ...]]:
-    """Return (name, graph or None) for each network; None: the name is a source that is yet to be read."""
+    """Return the name and the graph of each network, its source where that is yet to be read, and notes."""
     if isinstance(graphs, str | os.PathLike):
         graphs = [graphs]
     if isinstance(graphs, Mapping):
-        return list(graphs.items()), ()
-    networks: list[tuple[str, Any]] = []
-    notes: tuple[str, ...] = ()
+        graphs = [(str(name), graph) for name, graph in graphs.items()]
+    elif hasattr(graphs, "is_multigraph") or not hasattr(graphs, "__iter__"):
+        raise InvalidParameter(
+            f"a survey is about many networks, not {type(graphs).__name__}: give a list of graphs, or a dict from "
+            "their names to them"
+        )
+    networks: dict[str, Any] = {}
+    notes: list[str] = []
     for number, each in enumerate(graphs):
         if isinstance(each, str | os.PathLike):
             found = expand([each])
-            networks += [(name, None) for name in found.names]
             notes += found.notes
-        elif isinstance(each, tuple) and len(each) == 2 and isinstance(each[0], str):
-            networks.append(each)
-        else:
-            networks.append((str(number), each))
-    return networks, notes
+            notes += [note_of_twice(name) for name in found.names if name in networks]
+            networks |= {name: name for name in found.names}
+            continue
+        is_pair = isinstance(each, tuple) and len(each) == 2 and isinstance(each[0], str)
+        name, graph = each if is_pair else (str(number), each)
+        if name in networks:
+            raise InvalidParameter(f"two networks are named {name!r}: give each a name of its own")
+        networks[name] = graph
+    return list(networks.items()), tuple(notes)
 
 
 def _run(
@@ -273,7 +289,8 @@ def _row(
 ) -> tuple[str | None, Row]:
     """Return the row of one network, and its key in the journal when it is to be remembered."""
     try:
-        read: Digraph = read_with(name, reading or ReadingOptions()) if graph is None else as_digraph(graph)
+        is_source = isinstance(graph, str | os.PathLike)
+        read: Digraph = read_with(graph, reading or ReadingOptions()) if is_source else as_digraph(graph)
     except (RobustnessError, OSError) as problem:
         return None, unreadable(name, problem, question.gate)
     key = key_of(name, read, asked)

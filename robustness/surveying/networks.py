@@ -15,7 +15,7 @@ from robustness.files.front import format_suffix
 from robustness.files.text import one_line
 from robustness.natural_order import natural_key
 
-__all__ = ["Sources", "expand"]
+__all__ = ["Sources", "expand", "note_of_twice"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,9 +57,14 @@ def expand(paths: Iterable[str | os.PathLike[str]]) -> Sources:
         text = os.fspath(path)
         for name in _matches(text, notes):
             if name in names:
-                notes.append(f"{one_line(name)}: asked for twice, surveyed once")
+                notes.append(note_of_twice(name))
             names[name] = None
     return Sources(tuple(names), tuple(notes))
+
+
+def note_of_twice(name: str) -> str:
+    """Return what is said of a network that two sources name."""
+    return f"{one_line(name)}: asked for twice, surveyed once"
 
 
 def _matches(text: str, notes: list[str]) -> Iterator[str]:

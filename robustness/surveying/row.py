@@ -20,6 +20,9 @@ __all__ = ["Findings", "Gate", "Question", "Row", "measure", "unreadable"]
 #: What a gate says of a network, from best to worst. An error is worst: the network was not even asked about.
 STANDINGS = ("passed", "undecided", "refuted", "error")
 
+#: What stands in a table for a network that nothing was asked about.
+NOT_REACHED = "not reached before the survey ended: nothing is claimed"
+
 
 @dataclass(frozen=True, slots=True)
 class Gate:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Self
@@ -23,6 +24,9 @@ from robustness.surveying.row import Question, Row
 from robustness.whole_file import read_at_most
 
 __all__ = ["Journal", "key_of"]
+
+#: What a kill leaves of a journal's first line. A file of other content is never overwritten.
+_BEGINNING = re.compile(rb'[0-9a-f]{1,16}|[0-9a-f]{16} (\{("(k(e(y(".*)?)?)?)?)?)?')
 
 
 def key_of(name: str, graph: Digraph, question: Question) -> str:
@@ -96,7 +100,7 @@ class Journal:
                 content = json.loads(text)
                 self._rows[content["key"]] = Row.of_dict(content["row"])
             except (ValueError, KeyError, TypeError) as problem:
-                if number == len(lines) and number > 1:
+                if number == len(lines) and (number > 1 or _BEGINNING.fullmatch(line)):
                     break
                 raise UnreadableTopology(
                     f"{one_line(str(path))}, line {number}: not a line of a survey's journal ({problem}): "

@@ -12,9 +12,13 @@ from typing import Any
 from xml.etree import ElementTree as ET
 
 from robustness.printable import printable
-from robustness.surveying.row import Row
+from robustness.showing import listed_in_words
+from robustness.surveying.row import NOT_REACHED, Row
 
 __all__ = ["TABLES", "cells", "flat", "text"]
+
+#: How many nodes of a set a failure names.
+_MOST_NODES = 20
 
 
 def flat(row: Row, models: Sequence[str]) -> dict[str, Any]:
@@ -107,24 +111,37 @@ def _junit(rows: Sequence[Row], models: Sequence[str]) -> str:
         "testsuite",
         name="robustness survey",
         tests=str(len(rows)),
-        failures=str(sum(row.gate in ("refuted", "undecided") for row in rows)),
+        failures=str(sum(not row.error and row.gate in ("refuted", "undecided") for row in rows)),
         errors=str(sum(bool(row.error) for row in rows)),
+        skipped="0",
+        time=f"{sum(row.seconds for row in rows):.6f}",
     )
     head = cells([], models)[0]
     for row in rows:
         case = ET.SubElement(
             suite, "testcase", classname="robustness", name=_xml(row.network), time=f"{row.seconds:.6f}"
         )
+        if row.error:
+            kind = "not reached" if row.error == NOT_REACHED else "unreadable"
+            ET.SubElement(case, "error", type=kind, message=_xml(row.error))
+            continue
         facts = ", ".join(
             f"{name} {cell}" for name, cell in zip(head[1:], _line(row, models, False)[1:], strict=True) if cell
         )
-        if row.error:
-            ET.SubElement(case, "error", message=_xml(row.error))
-        elif row.gate in ("refuted", "undecided"):
-            ET.SubElement(case, "failure", type=row.gate, message=_xml(f"{row.gate}: {facts}"))
+        if row.gate in ("refuted", "undecided"):
+            failure = ET.SubElement(case, "failure", type=row.gate, message=_xml(f"{row.gate}: {facts}"))
+            failure.text = _xml(_weakest_pair(row)) or None
         ET.SubElement(case, "system-out").text = _xml(facts)
     ET.indent(suite)
     return ET.tostring(suite, encoding="unicode", xml_declaration=False) + "\n"
+
+
+def _weakest_pair(row: Row) -> str:
+    """Return the two sets that do not listen in words; empty where none is known."""
+    if row.weakest is None or row.r_at_most is None:
+        return ""
+    low, high = (listed_in_words(row.weakest[side], _MOST_NODES) for side in ("S1", "S2"))
+    return f"weakest pair: no node of S1 = {low} or S2 = {high} hears {row.r_at_most + 1} nodes outside its set"
 
 
 def _xml(words: str) -> str:

@@ -348,3 +348,17 @@ def test_a_sequence_is_drawn_as_the_union_that_the_answer_is_about() -> None:
     assert shorter.violation is not None
     assert rb.draw(swarm, shorter).get_title()
     assert {text.get_text() for text in rb.draw(swarm).texts} >= set("0123")
+
+
+def test_nodes_are_as_large_as_the_axes_leave_room_for() -> None:
+    sizes = []
+    for cells in (1, 6):
+        figure = new_figure(6.0, 6.0)
+        drawn = rb.draw(PETERSEN, ax=np.atleast_2d(figure.subplots(cells, cells))[0][0])
+        sizes.append(next(c for c in drawn.collections if isinstance(c, PathCollection)).get_sizes()[0])
+    assert sizes[1] < sizes[0] / 2
+
+
+def test_endless_names_are_cut() -> None:
+    drawn = rb.draw(nx.relabel_nodes(WHEEL, {0: "a" * 120}), ax=axes())
+    assert max((text.get_text() for text in drawn.texts), key=len) == "a" * 31 + "…"
