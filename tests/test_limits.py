@@ -14,8 +14,8 @@ import pytest
 import robustness as rb
 from robustness.answers import Answer
 from robustness.decision import determination
-from robustness.decision.determination import EXACT_S_NODES, PROFILE_NODES
-from robustness.decision.ladder import TRANSFORM_NODES
+from robustness.decision.determination import PROFILE_NODES
+from robustness.decision.ladder import EXACT_S_NODES, TRANSFORM_NODES
 from robustness.limits import Limits, Steps
 from tests.oracles import brute_profile
 

@@ -11,8 +11,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import robustness as rb
 from robustness import Digraph, Undecided, Verdict, robustness_profile
+from robustness.answers import Question
 from robustness.decision.algorithms import exhaustive, transform
+from robustness.decision.ladder import decide
 from robustness.limits import Limits
 from tests.oracles import brute_profile, digraphs, graphs, is_violating, labelled_digraphs
 
@@ -216,3 +219,31 @@ def test_up_to_28_nodes_one_transform_for_every_r_up_to_one_beyond_the_greatest(
     assert asked == list(range(1, greatest + 2))
     monkeypatch.setattr(transform, "available_memory", lambda: 1 << 20)
     assert robustness_profile(graph) == table
+
+
+def test_where_the_search_takes_longer_the_transform_decides_and_both_agree():
+    for seed in range(2):
+        graph = nx.gnp_random_graph(22, 0.9, seed=seed)
+        profile = rb.robustness_profile(graph)
+        for r, largest in profile.items():
+            for s in {min(max(s, 1), 22) for s in (2, largest - 1, largest, largest + 1, r)}:
+                answer = rb.check_rs_robustness(graph, r, s)
+                assert answer.verdict is (Verdict.ROBUST if s <= largest else Verdict.NOT_ROBUST), (seed, r, s)
+    hard = nx.gnp_random_graph(24, 0.9, seed=0)
+    assert rb.check_rs_robustness(hard, 9, 9).algorithm == "transform"
+    assert rb.check_rs_robustness(hard, 9, 9, algorithm="subset-search", time_limit=0.5).verdict is Verdict.UNDECIDED
+
+
+@pytest.mark.parametrize("why", ["a budget of steps", "too little memory", "s = 1", "cubes that are written down"])
+def test_what_stays_with_the_search(why, monkeypatch, tmp_path):
+    hard, limits, question = nx.gnp_random_graph(24, 0.9, seed=0), Limits(steps=10**7), (9, 9)
+    monkeypatch.setattr("robustness.decision.algorithms.transform.decide", lambda *_: pytest.fail("the transform ran"))
+    if why == "too little memory":
+        limits = Limits.of(0.3, 1, 0)
+        monkeypatch.setattr("robustness.decision.algorithms.transform.memory_suffices", lambda n: False)
+    elif why == "s = 1":
+        limits, question = Limits(), (9, 1)
+    elif why == "cubes that are written down":
+        limits = Limits.of(0.3, 1, 0).spread_over(state=tmp_path / "journal")
+    answer = decide(Question(Digraph.from_networkx(hard), *question), limits)
+    assert answer.verdict is (Verdict.ROBUST if why == "s = 1" else Verdict.UNDECIDED)

@@ -13,21 +13,18 @@ from types import MappingProxyType
 from typing import Any
 
 from robustness.answers import Answer, Question, Verdict, answers_in_turn
-from robustness.decision.ladder import algorithm_rung
+from robustness.decision.ladder import EXACT_S_NODES, algorithm_rung
 from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph
 from robustness.errors import Undecided
 from robustness.limits import UNLIMITED, Limits, Steps
 from robustness.results import Bound, Bounds, RobustnessResult, Witness
 
-__all__ = ["EXACT_S_NODES", "PROFILE_NODES", "SOLVER_NODES", "determine", "profile"]
+__all__ = ["PROFILE_NODES", "SOLVER_NODES", "determine", "profile"]
 
 #: Up to this many nodes ``auto`` reads the whole profile, and with it r* and s, off the subset-minimum transform, in a
 #: tenth of a second: O(n 2^n).
 PROFILE_NODES = 22
-
-#: Up to this many nodes s_max(r) is found by one transform where the search does not find it sooner: two seconds.
-EXACT_S_NODES = 28
 
 #: Up to this many nodes, and this many in-neighbours each on average, CP-SAT looks for s too when there is a time limit
 #: that both can share (random 5-regular, n = 60, (2,4): 15 seconds, and no end in sight for the search).

@@ -90,7 +90,8 @@ def check_rs_robustness(
         In 1..n.
     algorithm : str
         A name in ``ALGORITHMS``, or ``"auto"``: ``transform`` on up to 20 nodes; cheap bounds and then
-        ``subset-search`` on all others. What decided is recorded in the result.
+        ``subset-search`` on all others, which on up to 28 nodes and for s > 1 gives way to ``transform`` where it would
+        take longer. What decided is recorded in the result.
     time_limit : float, optional
         Wall-clock seconds; past it the verdict is UNDECIDED.
     jobs : int
