@@ -21,7 +21,12 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 @click.command("simulate")
 @click.argument("source", metavar="[GRAPH]", required=False)
 @reading_options
-@click.option("--experiment", type=click.Choice(EXPERIMENT_NAMES), help="An experiment of the paper instead of GRAPH.")
+@click.option(
+    "--experiment",
+    type=click.Choice(EXPERIMENT_NAMES),
+    help="Instead of GRAPH an experiment of Safi, Dibaji and Pirani, Resilient Coordinated Movement of "
+    "Connected Autonomous Vehicles.",
+)
 @click.option("--replay", type=_FILE, metavar="FILE", help="A run recorded with --save instead of GRAPH.")
 @click.option("--attack", "attack_file", type=_FILE, metavar="FILE", help="Play the attack that 'attack -o' wrote.")
 @click.option("--certificate", type=_FILE, metavar="FILE", help="Play the whole battery against a certificate.")

@@ -29,6 +29,8 @@ source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 exclude_patterns = ["_build", "**/.*", "python-api/*/modules.rst", "gallery/*.ipynb", "gallery/*.py"]
 html_theme = "furo"
 html_title = "graph-robustness"
+html_static_path = ["_static"]
+html_css_files = ["wrapped.css"]
 html_math_renderer = "mathml"
 
 myst_enable_extensions = ["dollarmath", "deflist", "colon_fence"]

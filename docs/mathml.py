@@ -7,13 +7,18 @@ from typing import Any
 from latex2mathml.converter import convert
 
 
+def mathml_of(formula: str, display: str = "inline") -> str:
+    """Return a formula as MathML. A set difference gets the stroke that common fonts have, as an operator."""
+    return convert(formula, display=display).replace("<mi>&#x029F5;</mi>", "<mo>&#x2216;</mo>")
+
+
 def _inline(writer: Any, node: Any) -> None:
-    writer.body.append(convert(node.astext()))
+    writer.body.append(mathml_of(node.astext()))
     raise _skip()
 
 
 def _block(writer: Any, node: Any) -> None:
-    writer.body.append(f"<div class='math'>{convert(node.astext(), display='block')}</div>\n")
+    writer.body.append(f"<div class='math'>{mathml_of(node.astext(), 'block')}</div>\n")
     raise _skip()
 
 

@@ -13,6 +13,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from html import unescape
 from pathlib import Path
 
 import pytest
@@ -112,3 +113,53 @@ def rewrite() -> None:
 
 if __name__ == "__main__":
     rewrite()
+
+
+def test_formulas_are_written_with_letters_that_common_fonts_have() -> None:
+    sys.path.insert(0, str(ROOT / "docs"))
+    try:
+        from mathml import mathml_of  # type: ignore[import-not-found]
+    finally:
+        sys.path.pop(0)
+    formulas = [
+        formula
+        for page in PAGES
+        for formula in re.findall(r"(?<!\\)\$\$?([^$\n]+?)\$\$?", page.read_text(encoding="utf-8"))
+    ]
+    assert len(formulas) > 300
+    assert "<mo>\u2216</mo>" in unescape(mathml_of(r"A \setminus B"))
+    # Letters, Latin to Greek; punctuation, letterlike signs, arrows, operators and brackets of the basic blocks.
+    basic = re.compile(r"[\x20-\x7e\n\u00a0-\u03ff\u2010-\u2064\u2100-\u21ff\u2200-\u22ff\u2308-\u230b]*")
+    for formula in formulas:
+        shown = unescape(re.sub("<[^>]*>", "", mathml_of(formula)))
+        assert basic.fullmatch(shown), (formula, shown)
+
+
+def test_long_lines_of_code_are_wrapped() -> None:
+    settings = (ROOT / "docs" / "conf.py").read_text(encoding="utf-8")
+    (name,) = re.findall(r'html_css_files = \["(.*?)"\]', settings)
+    rules = (ROOT / "docs" / "_static" / name).read_text(encoding="utf-8")
+    assert re.search(r"\.highlight pre[^{]*\{[^}]*white-space: pre-wrap", rules)
+
+
+def test_no_page_of_users_shows_a_table_of_hundreds_of_rows_unfolded() -> None:
+    for page in PAGES:
+        text = re.sub(r"<details>.*?</details>", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+        longest = max((table.count("\n") for table in re.findall(r"(?:^\|.*\n)+", text, re.MULTILINE)), default=0)
+        assert longest < 100, (page.name, longest)
+
+
+def test_whoever_reads_of_the_paper_learns_which() -> None:
+    title = "Resilient Coordinated Movement of Connected Autonomous Vehicles"
+    pages = {page: " ".join(page.read_text(encoding="utf-8").split()) for page in PAGES}
+    speaking = {page: text for page, text in pages.items() if re.search(r"\b([Ss]ource|[Tt]he) paper\b", text)}
+    assert len(speaking) > 5
+    for page, text in speaking.items():
+        assert title in text or "references.md" in text, page.name
+    for page in ("README.md", "references.md", "glossary.md", "lemma-1.md", "paper-audit.md", "paper-experiments.md"):
+        assert any(title in text for path, text in pages.items() if path.name == page), page
+    shown = subprocess.run(
+        [sys.executable, "-m", "cli", "simulate", "--help"], capture_output=True, text=True, check=True
+    )
+    assert title in " ".join(shown.stdout.split())
+    assert title in (ROOT / "CITATION.cff").read_text(encoding="utf-8")

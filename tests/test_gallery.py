@@ -24,6 +24,7 @@ def test_a_story_runs(story: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert done.stdout
     assert not list(tmp_path.glob("*.png"))
+    assert "\nplt.show()\n" in story.read_text(encoding="utf-8"), "a story has a picture"
 
 
 def test_the_page_of_public_names_has_every_name_once() -> None:

@@ -11,9 +11,12 @@ something small.
 # A filter that has been written more than once: sort what is heard and cut f values off either end.
 from statistics import fmean
 
+import matplotlib.pyplot as plt
+import networkx as nx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import robustness as rb
 from robustness.testing import rs_robust_graphs
 
 
@@ -44,5 +47,11 @@ except AssertionError as failure:
     print("it does not hold:", *getattr(failure, "__notes__", []), sep="\n")
 
 # %%
-# Every node of a triangle hears two values and drops both. The rule of W-MSR compares with the own value
-# first, for this very reason: a node at the bottom drops nothing below itself.
+# Every node of a triangle hears two values and drops both, so nobody ever moves. The rule of W-MSR compares with
+# the own value first, for this very reason: a node at the bottom drops nothing below itself.
+figure, (left, right) = plt.subplots(1, 2, figsize=(10, 3.5), layout="constrained")
+for rule, axes in ((lambda own, heard: fmean([own, *cut_both_ends(heard, f=1)]), left), ("w-msr", right)):
+    rb.simulate(nx.complete_graph(3), rule, 1, [], steps=20, positions=[0, 5, 9]).plot(ax=axes)
+left.set_title("cut both ends", loc="left")
+right.set_title("W-MSR", loc="left")
+plt.show()

@@ -121,12 +121,14 @@ def draw_to_file(
 
 
 def _size(graph: Digraph, places: Positions, is_map: bool) -> tuple[float, float]:
-    """Return the width and height of a picture in inches; a map's has the shape of the map, within reason."""
+    """Return the width and height of a picture in inches: the shape of the map or layout, within reason."""
     side = min(5.0 + graph.n / 15, 12.0)
-    if not is_map or len(places) < 2:
+    if len(places) < 2:
         return side * 1.35, side
     across, up = np.ptp(np.array(list(places.values())), axis=0)
     shape = min(max(across / up if up else math.inf, 0.6), 3.0)
+    if not is_map:  # drawn true to scale
+        return side * 1.35, side * min(1.0, max(0.5, 1.2 / shape))
     return side * max(1.35, shape**0.75) + 0.5, side * min(1.35, shape**-0.25)
 
 

@@ -89,6 +89,9 @@ def _graph_text(graph: Digraph) -> str:
 _HEAD = """\
 # Lemma 1 of the source paper, item by item
 
+The source paper is M. Safi, S. M. Dibaji, M. Pirani: *Resilient Coordinated Movement of Connected Autonomous Vehicles*
+([number 1 of the references](references.md)).
+
 This page is made by a command, which anyone can run again:
 
 ```

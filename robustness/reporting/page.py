@@ -44,7 +44,8 @@ def html(title: str, survey: Survey, gate: Gate, sections: Mapping[str, Section]
         f"<meta http-equiv='Content-Security-Policy' content=\"{_POLICY}\">\n"
         f"<title>{escape(title)}</title>\n<link rel='icon' href='data:,'>\n"
         f"<style>\n{_resource('page.css')}</style>\n</head>\n<body>\n<main>\n"
-        f"<h1>{escape(title)}</h1>\n<p class='verdict {survey.worst}'>{escape(headline(survey, gate))}</p>\n"
+        f"<h1>{escape(title)}</h1>\n"
+        f"<p class='verdict {_standing_of(survey, gate)}'>{escape(headline(survey, gate))}</p>\n"
         f"{_table(survey, sections)}\n{parts}"
         + (f"<h2>Notes</h2>\n<ul>{listed}</ul>\n" if notes else "")
         + f"{_FOOT}</main>\n<script>\n{_resource('page.js')}</script>\n</body>\n</html>\n"
@@ -63,6 +64,11 @@ _KEY = (
     "<p class='faint'>Under each threat model stands the largest f that is survived: 0 when agreement needs everybody "
     "to be honest, -1 when that does not suffice, 0..2 when 0 is proven, 3 refuted, and the rest was not decided.</p>"
 )
+
+
+def _standing_of(survey: Survey, gate: Gate) -> str:
+    """Return what colours the verdict; nothing where nothing was required, since nothing has passed then."""
+    return "" if gate == Gate() and survey.worst == "passed" else survey.worst
 
 
 def _resource(name: str) -> str:

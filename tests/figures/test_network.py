@@ -362,3 +362,14 @@ def test_nodes_are_as_large_as_the_axes_leave_room_for() -> None:
 def test_endless_names_are_cut() -> None:
     drawn = rb.draw(nx.relabel_nodes(WHEEL, {0: "a" * 120}), ax=axes())
     assert max((text.get_text() for text in drawn.texts), key=len) == "a" * 31 + "…"
+
+
+@pytest.mark.parametrize("network", [nx.wheel_graph(5), nx.petersen_graph(), nx.random_regular_graph(4, 40, seed=2)])
+def test_a_flat_layout_fills_its_picture(network: nx.Graph) -> None:
+    from matplotlib import pyplot as plt
+
+    drawn = rb.draw(network, rb.check_rs_robustness(network, 3))
+    drawn.figure.draw_without_rendering()
+    heights = drawn.transData.transform(np.vstack([c.get_offsets() for c in drawn.collections]))[:, 1]
+    assert np.ptp(heights) > 0.4 * drawn.figure.bbox.height
+    plt.close(drawn.figure)

@@ -124,6 +124,9 @@ def _runs_row(row: CensusRow, counts: list[dict[str, int]]) -> str:
 _PAGE = """\
 # The paper's claims, audited
 
+The source paper is M. Safi, S. M. Dibaji, M. Pirani: *Resilient Coordinated Movement of Connected Autonomous Vehicles*
+([number 1 of the references](references.md)).
+
 This page and its drawings are made by a command, which anyone can run again (a few minutes):
 
 ```
