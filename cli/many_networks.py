@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from robustness.surveying import Gate, Row, Survey
     from robustness.surveying.row import Findings
 
-__all__ = ["ManyNetworks", "exit_code", "many_networks_options", "run_survey"]
+__all__ = ["ManyNetworks", "exit_code", "many_networks_options", "require_outputs_apart", "run_survey"]
 
 _OPTIONS: tuple[Callable[[Any], Any], ...] = (
     click.argument("paths", nargs=-1, metavar="PATH..."),
@@ -74,6 +74,8 @@ class ManyNetworks:
     Attributes
     ----------
     paths : tuple of str
+    listing : str or None
+        The file that named some of them.
     gate : Gate
     models : tuple of str
     certificates : Path or None
@@ -83,6 +85,7 @@ class ManyNetworks:
     """
 
     paths: tuple[str, ...]
+    listing: str | None
     gate: Gate
     models: tuple[str, ...]
     certificates: Path | None
@@ -127,13 +130,33 @@ def many_networks_options(command: Callable[..., Any]) -> Callable[..., Any]:
         gate = Gate(r, 1 if s is None else s, survive)
         looked_at = () if no_models else models or THREAT_MODEL_NAMES
         networks = ManyNetworks(
-            wanted, gate, looked_at, certificates, timeout, total_timeout, jobs, seed, asked_reading()
+            wanted,
+            None if listed is None else listed.name,
+            gate,
+            looked_at,
+            certificates,
+            timeout,
+            total_timeout,
+            jobs,
+            seed,
+            asked_reading(),
         )
         return command(*arguments, networks=networks, **others)
 
     for option in reversed(_OPTIONS):
         with_networks = option(with_networks)
     return with_networks
+
+
+def require_outputs_apart(networks: ManyNetworks, outputs: Iterable[Path | None]) -> None:
+    """Guarantees that no output is a network, be it named, in a folder or met by a pattern, nor the list of them."""
+    from robustness.files.writing import require_different_files
+    from robustness.surveying.networks import expand
+
+    outputs = tuple(outputs)
+    require_different_files([*networks.paths, networks.listing], outputs)
+    if any(output is not None and output.is_file() for output in outputs):
+        require_different_files(expand(networks.paths).names, outputs)
 
 
 def _lines_of(stream: TextIO | None) -> list[str]:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from .many_networks import ManyNetworks, exit_code, many_networks_options, run_survey
+from .many_networks import ManyNetworks, exit_code, many_networks_options, require_outputs_apart, run_survey
 from .output import Console
 from .query import speaking
 
@@ -50,12 +50,11 @@ def command(
     would mend it, and how to verify its certificate. The verdict is printed as well, and the exit code is that of
     survey: of the worst network.
     """
-    from robustness.files.writing import require_different_files
     from robustness.reporting.front import Kept, report_of, require_drawing
     from robustness.reporting.wording import headline
 
     require_drawing(not no_pictures)
-    require_different_files(networks.paths, [output])
+    require_outputs_apart(networks, [output])
     kept = Kept(networks.gate, mending)
     found, is_interrupted = run_survey(console, networks, on_findings=kept.add)
     findings, proposals = tuple(kept.findings), dict(kept.proposals)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from .many_networks import ManyNetworks, exit_code, many_networks_options, run_survey
+from .many_networks import ManyNetworks, exit_code, many_networks_options, require_outputs_apart, run_survey
 from .options import json_option
 from .output import Console
 from .query import cluster_option, joined_cluster, speaking
@@ -57,11 +57,11 @@ def command(
     network; one that cannot be read has a row that says why. With -r or --require the exit code is that of the worst
     network: 0 all pass, 30 some undecided, 10 some refuted, 3 some unreadable. --timeout is for one network.
     """
-    from robustness.files.writing import replace_file, require_different_files
+    from robustness.files.writing import replace_file
     from robustness.reporting.wording import headline
     from robustness.surveying.tables import TABLES
 
-    require_different_files(networks.paths, [output, state])
+    require_outputs_apart(networks, [output, state])
     executor = None if cluster is None else joined_cluster(cluster)
     found, is_interrupted = run_survey(console, networks, state=state, mending=mending, executor=executor)
     for note in found.notes:

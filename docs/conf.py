@@ -26,11 +26,20 @@ extensions = [
     "sphinx_gallery.gen_gallery",
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = ["_build", "**/.*", "python-api/*/modules.rst", "gallery/*.ipynb", "gallery/*.py"]
+exclude_patterns = [
+    "_build",
+    "**/.*",
+    "python-api/*/modules.rst",
+    "gallery/*.ipynb",
+    "gallery/*.py",
+    "**/sg_execution_times.rst",
+]
 html_theme = "furo"
 html_title = "graph-robustness"
 html_static_path = ["_static"]
 html_css_files = ["wrapped.css"]
+# A summary would be fetched, which browsers refuse to pages that are opened from a folder.
+html_show_search_summary = False
 html_math_renderer = "mathml"
 
 myst_enable_extensions = ["dollarmath", "deflist", "colon_fence"]

@@ -90,7 +90,7 @@ class TestWords:
         made = rb.report([tmp_path / "broken.json"], gate=rb.Gate(survive=1), pictures=False)
         assert "The network must survive 1 malicious node under every threat model; it could not be read." in made.html
         cut = rb.report({"a": nx.complete_graph(4)}, total_time_limit=1e-9, gate=rb.Gate(survive=1), pictures=False)
-        assert "that was not decided within the limit: nothing is claimed." in cut.html
+        assert "it was not reached: nothing is claimed." in cut.html
 
     @pytest.mark.parametrize(
         ("gates", "models", "words"),
@@ -109,6 +109,8 @@ class TestWords:
             ),
             (["passed", "refuted"], [], "1 of 2 networks is (2,1)-robust and survives"),
             (["refuted", "error", "error"], [], "None of 3 networks are"),
+            (["passed", "missing"], [], "; 1 was not reached: nothing is claimed about it."),
+            (["missing", "missing"], [], "survive 1 malicious node under every threat model; 2 were not reached: "),
             (["refuted", "error", "error"], [], "; 1 fails, with a counterexample; 2 could not be read."),
             (
                 ["passed", "undecided", "refuted", "refuted"],
@@ -120,7 +122,8 @@ class TestWords:
     )
     def test_numbers_and_models_are_told_as_they_are(self, gates: list[str], models: list[str], words: str) -> None:
         asked = tuple(models or THREAT_MODELS)
-        found = Survey(tuple(Row(str(k), gate=gate) for k, gate in enumerate(gates)), asked)
+        rows = tuple(Row(str(k), gate=gate) for k, gate in enumerate(gates) if gate != "missing")
+        found = Survey(rows, asked, missing=("late",) * gates.count("missing"))
         told = headline(found, rb.Gate(r=2, survive=1))
         assert words in told
         assert ("under every threat model" in told) == (not models)

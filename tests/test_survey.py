@@ -302,6 +302,33 @@ class TestTables:
             assert target.read_text(encoding="utf-8").startswith(start)
 
 
+@pytest.mark.parametrize("command", ["survey", "report"])
+@pytest.mark.parametrize("asked", [["."], ["*.json"], ["b.json"], ["--from", "list.txt"], ["sub/.."]])
+def test_no_output_over_a_network_wherever_it_was_named(
+    command: str, asked: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "sub").mkdir()
+    for name in ("a.json", "b.json"):
+        write_topology(nx.path_graph(3), name)
+    (tmp_path / "list.txt").write_text("b.json\n", encoding="utf-8")
+    before = (tmp_path / "b.json").read_bytes()
+    arguments = [command, *asked, "-o", "b.json", "--no-models"]
+    assert CliRunner().invoke(robustness, arguments).exit_code == 2
+    assert (tmp_path / "b.json").read_bytes() == before
+    assert CliRunner().invoke(robustness, [command, "a.json", "--from", "list.txt", "-o", "list.txt"]).exit_code == 2
+    assert (tmp_path / "list.txt").read_text(encoding="utf-8") == "b.json\n"
+
+
+def test_no_output_over_the_file_that_an_input_is_a_part_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    many = nx.to_graph6_bytes(nx.cycle_graph(5), header=False) + nx.to_graph6_bytes(nx.path_graph(4), header=False)
+    (tmp_path / "many.g6").write_bytes(many)
+    for arguments in (["mend", "many.g6#1", "-r", "2"], ["thin", "many.g6#1", "-r", "1"], ["survey", "many.g6#2"]):
+        assert CliRunner().invoke(robustness, [*arguments, "-o", "many.g6"]).exit_code == 2
+        assert (tmp_path / "many.g6").read_bytes() == many
+
+
 def test_misuse() -> None:
     with pytest.raises(rb.InvalidParameter, match="jobs"):
         rb.survey([], jobs=0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import stat
 import tempfile
 import zlib
@@ -64,6 +65,8 @@ def require_different_files(
 ) -> None:
     """Guarantees that no output is an input or another output, before any work is done; None names no file.
 
+    An input ``FILE#3``, one graph of many in a file, is that file.
+
     Raises
     ------
     InvalidParameter
@@ -72,7 +75,7 @@ def require_different_files(
     seen: dict[str, str] = {}
     for path in inputs:
         if path is not None:
-            seen[os.path.realpath(path)] = f"the input {os.fspath(path)}"
+            seen[os.path.realpath(_whole(os.fspath(path)))] = f"the input {os.fspath(path)}"
     for path in outputs:
         if path is None:
             continue
@@ -80,6 +83,11 @@ def require_different_files(
         if real in seen and not _is_special(Path(real)):
             raise InvalidParameter(f"the output {os.fspath(path)} is the same file as {seen[real]}: name another file")
         seen[real] = f"the output {os.fspath(path)}"
+
+
+def _whole(source: str) -> str:
+    match = re.fullmatch(r"(.+)#\d+", source, re.DOTALL)
+    return source if match is None or os.path.lexists(source) else match[1]
 
 
 def _is_special(target: Path) -> bool:

@@ -19,7 +19,7 @@ def headline(survey: Survey, gate: Gate) -> str:
     if gate.r is None and gate.survive is None:
         return _without_gate(survey, total)
     counted = Counter(row.gate for row in survey.rows)
-    counted["undecided"] += len(survey.missing)
+    counted["missing"] = len(survey.missing)
     if total == 1:
         return _about_one(next(name for name, count in counted.items() if count), gate, survey.models)
     passed = counted["passed"]
@@ -32,6 +32,7 @@ def headline(survey: Survey, gate: Gate) -> str:
             "was not decided within the limit: nothing is claimed about it",
             "were not decided within the limit: nothing is claimed about them",
         ),
+        "missing": ("was not reached: nothing is claimed about it", "were not reached: nothing is claimed about them"),
         "error": ("could not be read", "could not be read"),
     }
     rest = "; ".join(f"{counted[name]} {tail[counted[name] != 1]}" for name, tail in tails.items() if counted[name])
@@ -44,6 +45,7 @@ def _about_one(standing: str, gate: Gate, models: Sequence[str]) -> str:
     told = {
         "refuted": "it fails, with a counterexample",
         "undecided": "that was not decided within the limit: nothing is claimed",
+        "missing": "it was not reached: nothing is claimed",
         "error": "it could not be read",
     }
     return f"The network must {_wish(gate, models, 'be')}; {told[standing]}."
