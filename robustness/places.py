@@ -6,10 +6,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-__all__ = ["place_of", "two_numbers"]
+__all__ = ["place_of", "turned_up", "two_numbers"]
 
-#: Pairs of attributes that hold a place, horizontal first. GraphML of yEd has x and y (y points down there, which
-#: mirrors the picture and nothing else); topology collections have longitude and latitude.
+#: Pairs of attributes that hold a place, horizontal first. GraphML of yEd has x and y, which its reader turns up
+#: (:func:`turned_up`); topology collections have longitude and latitude.
 _PAIRS = (("x", "y"), ("lon", "lat"), ("longitude", "latitude"), ("lng", "lat"))
 
 
@@ -43,3 +43,15 @@ def two_numbers(across: Any, up: Any) -> tuple[float, float] | None:
     except (TypeError, ValueError):
         return None
     return (x, y) if math.isfinite(x) and math.isfinite(y) else None
+
+
+def turned_up(down: str) -> str:
+    """Return the y of a drawing whose y points down, as that of yEd does, such that up is up.
+
+    >>> turned_up("30.5"), turned_up("-2"), turned_up("high")
+    ('-30.5', '2.0', 'high')
+    """
+    try:
+        return repr(0.0 - float(down))
+    except ValueError:
+        return down

@@ -278,7 +278,15 @@ class TestOptions:
 
     def test_places_and_names_survive(self) -> None:
         graph = read(UNDIRECTED["yed.graphml"], ".graphml").to_networkx()
-        assert graph.nodes["c"] == {"id": "n9::n2", "pos": (2.5, 4.0)}
+        assert graph.nodes["c"] == {"id": "n9::n2", "pos": (2.5, -4.0)}  # y points down in yEd
+
+    @pytest.mark.parametrize(("editor", "y"), [("yFiles", -2.0), ("Gephi", 2.0)])
+    def test_up_is_up_in_what_editors_draw(self, editor: str, y: float) -> None:
+        drawn = (
+            f'Creator "{editor}"\ngraph [ node [ id 0 graphics [ x 1.0 y 2.0 ] ] node [ id 1 graphics [ x 5.0 y 0 ] ] '
+            "edge [ source 0 target 1 ] ]"
+        )
+        assert read(drawn, ".gml").places == [(1.0, y), (5.0, 0.0)]
 
     def test_direction_as_asked(self) -> None:
         assert read(DIRECTED["snap.txt"], ".txt", directed=False).arc_count == 8

@@ -13,7 +13,7 @@ import numpy as np
 
 from robustness.errors import InvalidParameter, MissingExtra
 from robustness.figures.saving import new_figure
-from robustness.figures.simulation import GROUP_COLORS, LIAR_COLOR, Run, recorded, run_title
+from robustness.figures.simulation import GROUP_COLORS, LIAR_COLOR, Run, position_in_words, recorded, run_title
 from robustness.figures.time_span import last_step_shown
 from robustness.figures.wording import nodes_in_words, plain
 from robustness.files import replace_file
@@ -58,13 +58,13 @@ def animate(run: Run, path: str | os.PathLike[str], *, last_step: int | None = N
     low, high = float(shown.min()), float(shown.max())
     margin = 0.1 * (high - low) or 1.0
     axes.set_xlim(low - margin, high + margin)
-    axes.set_ylim(-0.8, len(labels) - 0.2)
+    axes.set_ylim(-0.8, len(labels) + 0.3)  # a lane more for the clock
     in_order = in_natural_order(labels)
     axes.set_yticks(range(len(labels)), [plain(each) for each in in_order], fontsize=max(4, 9 - len(labels) // 12))
     axes.invert_yaxis()
     lane = np.argsort([labels.index(each) for each in in_order])
     claimed = f"\ncross: what {nodes_in_words([labels[i] for i in bad], 4)} claims, at the edge when farther out"
-    axes.set_xlabel("position relative to the moving target" + (claimed if bad else ""))
+    axes.set_xlabel(position_in_words(run.scenario) + (claimed if bad else ""))
     axes.set_title(run_title(run), fontsize=10, loc="left")
     axes.grid(axis="y", alpha=0.3)
     dots = axes.scatter(states.p[0, normal], lane[normal], c=[colors[labels[i]] for i in normal], s=46, zorder=3)

@@ -13,8 +13,8 @@ import numpy as np
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import MissingExtra
 from robustness.figures.marking import Marks, marks_of
-from robustness.figures.naming import write_names
-from robustness.figures.placement import Positions, positions_for, positions_in
+from robustness.figures.naming import are_short, write_names
+from robustness.figures.placement import Positions, moved_apart, positions_for, positions_in, scale_of
 from robustness.figures.saving import new_figure, save_figure
 from robustness.figures.wording import name_on_picture, plain
 from robustness.showing import Shown
@@ -32,6 +32,9 @@ _STYLES: Mapping[str, tuple[str, str]] = {
     "M": ("#d55e00", "D"),
     "rest": ("#d9d9d9", "o"),
 }
+
+#: How far arrows bend, as part of their length, so that there and back are two.
+_BEND = 0.06
 
 _SILENCED, _ADDED, _PLAIN = "#d55e00", "#009e73", "#b8b8b8"
 
@@ -91,7 +94,7 @@ def draw(
         except ImportError:
             raise MissingExtra("drawing needs matplotlib: pip install 'graph-robustness[plot]'") from None
         ax = plt.subplots(figsize=_size(graph, places, is_map), layout="constrained")[1]
-    _draw_on(ax, graph, marks, places, _size_around(ax))
+    _draw_on(ax, graph, marks, places, scale_of(places, _room(_size_around(ax), graph, marks), is_map))
     if not is_map:
         # Circles of ours stay circles, in a picture that is filled, so that no node of a flat one is cut off; maps and
         # users' places fill a picture of their shape.
@@ -139,35 +142,50 @@ def _size_around(axes: Axes) -> tuple[float, float]:
     return float(extent.width) / 0.775, float(extent.height) / 0.77
 
 
-def _draw_on(axes: Axes, graph: Digraph, marks: Marks, places: Positions, shape: tuple[float, float]) -> None:
-    """Draw arcs first, then nodes, then names, then what everything means."""
+def _room(shape: tuple[float, float], graph: Digraph, marks: Marks) -> tuple[float, float]:
+    """Return the width and height in inches that the network takes of a picture, beside its legend and margins."""
+    named = [_told(name, group) for name, group in _groups(graph, marks) if group]
+    told = [*(named if len(named) > 1 else []), *(handle.get_label() for handle in _arc_handles(marks))]
+    legend = (45 + 4.8 * max(map(len, told))) / 72 if told else 0.0
+    return 0.78 * max(0.3 * shape[0], shape[0] - legend), 0.78 * shape[1]
+
+
+def _draw_on(axes: Axes, graph: Digraph, marks: Marks, places: Positions, scale: np.ndarray) -> None:
+    """Draw arcs first, then nodes, then names, then what everything means; ``scale`` is points a unit, both ways."""
     picture = nx.DiGraph()
     picture.add_nodes_from(range(graph.n))
     picture.add_edges_from(graph.arcs())
-    size = _node_size(places, shape)
-    _draw_arcs(axes, picture, graph, marks, places, size)
-    handles = [_draw_group(axes, picture, name, group, places, size) for name, group in _groups(graph, marks)]
-    write_names(axes, {i: name_on_picture(label) for i, label in enumerate(graph.labels)}, places, size, shape)
+    named = [name_on_picture(label) for label in graph.labels]
+    size = _node_size(places, scale, 25.0 if are_short(named) else 17.0)
+    places = moved_apart(places, scale, 1.2 * size**0.5)
+    groups = [(name, group) for name, group in _groups(graph, marks) if group]
+    arrows = _draw_arcs(axes, picture, graph, marks, places, size)
+    # Small sets over large ones, and their names first: in a crowd they are what the picture is about.
+    smallest_first = sorted(groups, key=lambda one: len(one[1]))
+    largest_first = sorted(groups, key=lambda one: -len(one[1]))
+    drawn = {name: _draw_group(axes, picture, name, group, places, size) for name, group in largest_first}
+    points = {i: (x * float(scale[0]), y * float(scale[1])) for i, (x, y) in places.items()}
+    names = {i: named[i] for _, group in smallest_first for i in sorted(group)}
+    write_names(axes, names, places, points, size, list(picture.edges), arrows, _BEND)
+    if not graph.n:
+        axes.text(0.5, 0.5, "a network without nodes", ha="center", va="center", transform=axes.transAxes)
     if marks.title:
         axes.set_title(plain(marks.title), fontsize=11, wrap=True)
     axes.set_axis_off()
     axes.margins(0.12)
-    told = [handle for handle in handles if handle is not None]
+    told = [drawn[name] for name, _ in groups]
     _legend(axes, [*(told if len(told) > 1 else []), *_arc_handles(marks)])
 
 
-def _node_size(places: Positions, shape: tuple[float, float]) -> float:
-    """Return the area of a node in square points: what the places leave room for on a picture of this shape."""
-    largest, least = 620.0, 70.0
+def _node_size(places: Positions, scale: np.ndarray, largest: float) -> float:
+    """Return the area of a node in square points, not wider than ``largest``: what the places leave room for."""
+    least = 13.4 * min(1.0, (100 / max(len(places), 1)) ** 0.5)
     if len(places) < 2:
-        return largest
-    points = np.array([places[i] for i in sorted(places)])
-    extent = np.ptp(points, axis=0)
-    points = points / np.where(extent > 0, extent, 1.0) * np.array(shape)
+        return largest**2
+    points = np.array([places[i] for i in sorted(places)]) * scale
     near = np.sort(np.hypot(*(points[:, None] - points[None]).T), axis=0)[1]
-    # Most nodes get room; where a few lie nearly on top of each other, nothing helps.
-    room = float(np.quantile(near, 0.3)) * 72 * 0.8
-    return float(min(largest, max(least, (0.8 * room) ** 2)))
+    # Most nodes get room; the few that lie nearly on top of each other are moved apart.
+    return float(min(largest, max(4.0, least, 0.8 * float(np.quantile(near, 0.2))))) ** 2
 
 
 def _groups(graph: Digraph, marks: Marks) -> list[tuple[str, frozenset[int]]]:
@@ -178,27 +196,35 @@ def _groups(graph: Digraph, marks: Marks) -> list[tuple[str, frozenset[int]]]:
 def _draw_group(
     axes: Axes, picture: nx.DiGraph, name: str, group: frozenset[int], places: Positions, size: float
 ) -> Any:
-    """Draw one set of nodes; its return value is what the legend shows. An empty set has none."""
-    if not group:
-        return None
+    """Draw one set of nodes; its return value is what the legend shows."""
     color, shape = _STYLES[name]
     drawn = nx.draw_networkx_nodes(
         picture, places, nodelist=sorted(group), node_color=color, node_shape=shape, node_size=size,
         edgecolors="#404040", linewidths=0.8, ax=axes,
     )  # fmt: skip
-    told = {"M": "M, malicious", "rest": "other"}.get(name, name)
-    drawn.set_label(f"{told}: {len(group)} node{'s' * (len(group) != 1)}")
+    drawn.set_label(_told(name, group))
     return drawn
 
 
-def _draw_arcs(axes: Axes, picture: nx.DiGraph, graph: Digraph, marks: Marks, places: Positions, size: float) -> None:
-    """Draw what does not count first and faint, as lines where a link goes both ways; then what does, as arrows."""
+def _told(name: str, group: frozenset[int]) -> str:
+    """Return what the legend says of a set of nodes."""
+    told = {"M": "M, malicious", "rest": "other"}.get(name, name)
+    return f"{told}: {len(group)} node{'s' * (len(group) != 1)}"
+
+
+def _draw_arcs(
+    axes: Axes, picture: nx.DiGraph, graph: Digraph, marks: Marks, places: Positions, size: float
+) -> list[tuple[int, int]]:
+    """Draw what does not count first and faint, as lines where a link goes both ways; then what does, as arrows.
+
+    Returns the arcs that have heads.
+    """
     strong = marks.counted | marks.silenced | marks.added | marks.dropped
     faint = [arc for arc in picture.edges if arc not in strong]
     both = [(u, v) for u, v in faint if picture.has_edge(v, u) and (u < v or (v, u) in strong)]
     single = [(u, v) for u, v in faint if not picture.has_edge(v, u)]
     width = 1.0 if graph.arc_count <= 400 else 0.4
-    bend = "arc3,rad=0.06"
+    bend = f"arc3,rad={_BEND}"
     nx.draw_networkx_edges(
         picture, places, [arc for arc in both if (arc[1], arc[0]) not in strong], edge_color=_PLAIN, width=width,
         arrows=False, ax=axes,
@@ -211,15 +237,21 @@ def _draw_arcs(axes: Axes, picture: nx.DiGraph, graph: Digraph, marks: Marks, pl
         (_one_way(marks.added), _ADDED, 3.4, "solid"),
         (_one_way(marks.dropped), _SILENCED, 1.4, "dashed"),
     )
+    # The corners of squares and diamonds stick out; heads end before them.
+    cornered = marks.S2 | marks.M
+    ends = [size * (1.7 if node in cornered else 1.0) for node in picture]
+    headed: list[tuple[int, int]] = []
     links = {arc for group in (marks.added, marks.dropped) for arc in group if (arc[1], arc[0]) in group}
     for arcs, color, thick, style in shapes:
         if arcs:
             shape = picture.copy()
             shape.add_edges_from(arcs)
             nx.draw_networkx_edges(
-                shape, places, sorted(arcs), edge_color=color, width=thick, style=style, node_size=size, arrows=True,
+                shape, places, sorted(arcs), edge_color=color, width=thick, style=style, node_size=ends, arrows=True,
                 arrowstyle="-" if links.issuperset(arcs) else "-|>", arrowsize=11, connectionstyle=bend, ax=axes,
             )  # fmt: skip
+            headed += [] if links.issuperset(arcs) else arcs
+    return headed
 
 
 def _one_way(arcs: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:

@@ -14,7 +14,7 @@ from robustness.errors import InvalidParameter
 from robustness.figures.marking import Marks
 from robustness.places import place_of, two_numbers
 
-__all__ = ["Positions", "positions_for", "positions_in"]
+__all__ = ["Positions", "moved_apart", "positions_for", "positions_in", "scale_of"]
 
 #: Where each node stands, by id.
 Positions = dict[int, tuple[float, float]]
@@ -84,6 +84,51 @@ def positions_for(
     return _spread(graph)
 
 
+def scale_of(places: Positions, shape: tuple[float, float], fills: bool) -> np.ndarray:
+    """Return points a unit, across and up, of a network drawn in this width and height in inches.
+
+    With ``fills`` the places are stretched to fill it, otherwise one unit is as long across as up.
+    """
+    extent = np.ptp(np.array(list(places.values())), axis=0) if places else np.zeros(2)
+    room = 72 * np.array(shape)
+    scale = np.where(extent > 0, room / np.where(extent > 0, extent, 1.0), np.inf)
+    scale = scale if fills else np.full(2, scale.min())
+    return np.where(np.isfinite(scale), scale, 1.0)
+
+
+def moved_apart(places: Positions, scale: np.ndarray, wide: float) -> Positions:
+    """Return places where nodes so many points wide do not cover each other; those that have room keep theirs.
+
+    Of more than 300 nodes, a crowd in any case, all keep theirs. Pairs that are too near push each other away, again
+    and again, as in any relaxation of a force layout.
+    """
+    if not 2 <= len(places) <= 300:
+        return places
+    nodes = sorted(places)
+    start = np.array([places[i] for i in nodes]) * scale
+    points = start.copy()
+    for _ in range(100):
+        apart = points[:, None] - points[None]
+        distance = np.hypot(apart[..., 0], apart[..., 1])
+        first, second = np.nonzero(np.triu(distance < wide, 1))
+        if not len(first):
+            break
+        for i, j in zip(first, second, strict=True):
+            gap = points[i] - points[j]
+            length = float(np.hypot(*gap))
+            # Nodes on the very same place leave it in directions of their own.
+            turn = _TURN + 2.4 * j
+            way = gap / length if length > 1e-6 * wide else np.array([math.cos(turn), math.sin(turn)])
+            push = max(0.0, 0.51 * (1.03 * wide - length)) * way
+            points[i] += push
+            points[j] -= push
+    moved = (points != start).any(axis=1)
+    return {
+        node: (float(x), float(y)) if away else places[node]
+        for node, away, (x, y) in zip(nodes, moved, points / scale, strict=True)
+    }
+
+
 def _sides(graph: Digraph, marks: Marks) -> Positions:
     """Return places: S1 left, S2 right, above them the malicious nodes outside both, below them all others."""
     others = frozenset(range(graph.n)) - marks.S1 - marks.S2 - marks.M
@@ -91,14 +136,14 @@ def _sides(graph: Digraph, marks: Marks) -> Positions:
     places: Positions = {}
     radius = {name: 0.3 * math.sqrt(max(len(group), 2)) for name, group in
               (("S1", marks.S1), ("S2", marks.S2), ("M", apart), ("rest", others))}  # fmt: skip
-    wide = max(radius["S1"], radius["S2"], (radius["M"] if apart else 0.0), (radius["rest"] if others else 0.0))
-    reach = wide + max(radius["S1"], radius["S2"]) + 0.45
+    between = max(0.3, (radius["M"] if apart else 0.0), (radius["rest"] if others else 0.0))
     tall = max(radius["S1"], radius["S2"])
+    # Arcs between the sides run through the middle: nobody stands in it.
     centres = {
-        "S1": (-reach, 0.0),
-        "S2": (reach, 0.0),
-        "M": (0.0, (tall + radius["M"]) * 0.75 if others else 0.0),
-        "rest": (0.0, -(tall + radius["rest"]) * 0.75 if apart else 0.0),
+        "S1": (-between - radius["S1"] - 0.45, 0.0),
+        "S2": (between + radius["S2"] + 0.45, 0.0),
+        "M": (0.0, 0.5 * tall + radius["M"]),
+        "rest": (0.0, -0.5 * tall - radius["rest"]),
     }
     for name, group in (("S1", marks.S1), ("S2", marks.S2), ("M", apart), ("rest", others)):
         places.update(_circle(sorted(group), centres[name], radius[name]))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import textwrap
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -21,7 +22,17 @@ from robustness.simulation.update_rules import rule_named
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["GROUP_COLORS", "LIAR_COLOR", "QUANTITIES", "Run", "draw_outcome", "draw_runs", "recorded", "run_title"]
+__all__ = [
+    "GROUP_COLORS",
+    "LIAR_COLOR",
+    "QUANTITIES",
+    "Run",
+    "draw_outcome",
+    "draw_runs",
+    "position_in_words",
+    "recorded",
+    "run_title",
+]
 
 #: What can be drawn: the axis label of each quantity.
 QUANTITIES = {
@@ -40,6 +51,9 @@ _DASHES = ("-", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 1)))
 
 #: So many groups are named; more than these are mostly vehicles that never met.
 _NAMED = 6
+
+#: Crosses on a curve of claims, other ones for every curve, and letters on a line of the legend.
+_CROSSES, _CLAIM_MARKS, _LEGEND_WIDE = 20, ("x", "+", "1", "2", "3", "4"), 34
 
 
 class Run(NamedTuple):
@@ -139,6 +153,11 @@ def run_title(run: Run) -> str:
     return (f"{plain(run.title)}\n" if run.title else "") + plain(f"{how}{delays}: {end}")
 
 
+def position_in_words(scenario: Scenario, quantity: str = "relative-position") -> str:
+    """Return what the axis of positions is called: one word where the target stands still."""
+    return QUANTITIES[quantity] if scenario.target_speed else "position p"
+
+
 def _require_quantities(quantities: Sequence[str]) -> None:
     for quantity in quantities:
         if quantity not in QUANTITIES:
@@ -161,7 +180,8 @@ def _draw_quantity(panel: Axes, quantity: str, run: Run, last_step: int | None) 
             dashes = _DASHES[place % len(_DASHES)]
             panel.plot(times, values[:, i], ls=dashes, lw=1.4, color=color, label="_")
         if number < _NAMED:
-            panel.plot([], [], color=color, lw=2, label=f"{nodes_in_words(group, 5)} at {values_in_words[number]}")
+            told = f"{nodes_in_words(group, 5)} at {values_in_words[number]}"
+            panel.plot([], [], color=color, lw=2, label=_wrapped(told))
     if len(outcome.groups) > _NAMED:
         panel.plot([], [], lw=0, label=f"… {len(outcome.groups) - _NAMED} more")
     if normal:
@@ -172,8 +192,13 @@ def _draw_quantity(panel: Axes, quantity: str, run: Run, last_step: int | None) 
         panel.axvline(outcome.diverged_at * scenario.T, color="black", lw=0.8, ls=":")
     panel.set_xlabel(_time_axis(run, int(steps[-1])))
     panel.locator_params(axis="x", integer=scenario.T == 1)
-    panel.set_ylabel(QUANTITIES[quantity] if scenario.target_speed or quantity == "velocity" else "position p")
+    panel.set_ylabel("velocity v" if quantity == "velocity" else position_in_words(scenario, quantity))
     panel.grid(alpha=0.3)
+
+
+def _wrapped(told: str) -> str:
+    """Return a line of the legend in several where it would take the room of the curves."""
+    return textwrap.fill(told, _LEGEND_WIDE, break_long_words=False, break_on_hyphens=False)
 
 
 def _told_apart(values: Sequence[float]) -> list[str]:
@@ -200,33 +225,43 @@ def _fit(panel: Axes, shown: Floats) -> None:
 
 
 def _draw_claims(panel: Axes, quantity: str, run: Run, steps: Any) -> None:
-    """Draw what every liar says, dashed; two faces as two lines, where one says different things in turn."""
+    """Draw what the liars say, dashed, once for those who say the same; two faces as two lines, where one has them."""
     scenario, start = run.scenario, run.start
     labels, sent = scenario.network.union.labels, recorded(run).sent
-    for label in sorted(start.malicious, key=labels.index)[:3]:
-        i = labels.index(label)
-        for which, told in _faces(scenario, label, sent[:, i]):
+    marks = iter(_CLAIM_MARKS)
+    same: dict[bytes, list[object]] = {}
+    for label in sorted(start.malicious, key=labels.index):
+        same.setdefault(sent[:, labels.index(label)].tobytes(), []).append(label)
+    for liars in list(same.values())[:3]:
+        i = labels.index(liars[0])
+        for which, told in _faces(scenario, liars, sent[:, i]):
             chosen = steps[(steps % 2 == which) | (which < 0)]
             claims = sent[chosen, i]
             if quantity == "position":
                 claims = to_absolute(claims, claims, chosen, scenario.T, scenario.target_speed)[0]
-            panel.plot(chosen * scenario.T, claims, ls=(0, (4, 3)), lw=1.0, color=LIAR_COLOR, zorder=1.5, label=told)
+            # Behind the curves; the crosses stick out where a claim is what a normal vehicle says.
+            panel.plot(
+                chosen * scenario.T, claims, ls=(0, (4, 3)), lw=0.8, color=LIAR_COLOR, zorder=1.5, label=_wrapped(told),
+                marker=next(marks), markersize=5, markevery=max(1, len(chosen) // _CROSSES),
+            )  # fmt: skip
 
 
-def _faces(scenario: Scenario, label: object, sent: Floats) -> Iterator[tuple[int, str]]:
-    """Yield the lines that show what a liar says: of all steps (-1), or of even (0) and odd ones (1)."""
-    name = plain(label)
+def _faces(scenario: Scenario, liars: Sequence[object], sent: Floats) -> Iterator[tuple[int, str]]:
+    """Yield the lines that show what liars say: of all steps (-1), or of even (0) and odd ones (1)."""
+    one = len(liars) == 1
+    name = plain(liars[0]) if one else nodes_in_words(liars, 4)
+    say, show = ("says", "shows") if one else ("say", "show")
     adversary = scenario.adversary
     if isinstance(adversary, Alternating) and adversary.sees_even and adversary.sees_odd:
-        yield 0, f"{name} shows {nodes_in_words(adversary.sees_even, 4)}"
-        yield 1, f"{name} shows {nodes_in_words(adversary.sees_odd, 4)}"
+        yield 0, f"{name} {show} {nodes_in_words(adversary.sees_even, 4)}"
+        yield 1, f"{name} {show} {nodes_in_words(adversary.sees_odd, 4)}"
         return
     jumps = np.abs(np.diff(sent))
     if len(jumps) >= 4 and np.median(jumps) > 0.2 * (np.ptp(sent) or 1.0):
-        yield 0, f"{name} says at even steps"
-        yield 1, f"{name} says at odd steps"
+        yield 0, f"{name} {say} at even steps"
+        yield 1, f"{name} {say} at odd steps"
         return
-    yield -1, f"{name} says"
+    yield -1, f"{name} {say}"
 
 
 def _steps(run: Run, last_step: int | None) -> Any:

@@ -16,7 +16,7 @@ from robustness.digraph import Digraph
 from robustness.errors import UnreadableTopology
 from robustness.files.found import Found, Link, Node, ReadingOptions, graph_of
 from robustness.files.text import decode_utf8, texts_of, warn_lossy
-from robustness.places import place_of
+from robustness.places import place_of, turned_up
 
 __all__ = ["decode", "encode"]
 
@@ -37,9 +37,9 @@ _Record = dict[str, Any]
 def decode(data: bytes, options: ReadingOptions) -> Digraph:
     """Return the graph of a GML file: nodes are named by ``label`` where each has one of its own, else by ``id``."""
     records, settings = _read(decode_utf8(data))
-    nodes = [_node(record) for kind, record, _ in records if kind == "node"]
-    known = {node.id for node in nodes}
     is_drawn = "yfiles" in str(settings.get("creator", "")).lower()
+    nodes = [_node(record, is_drawn) for kind, record, _ in records if kind == "node"]
+    known = {node.id for node in nodes}
     links = [_link(record, known, line, is_drawn) for kind, record, line in records if kind == "edge"]
     directed = str(settings.get("directed", 0)) == "1"
     notes = []
@@ -132,9 +132,13 @@ def _letter(match: re.Match[str]) -> str:
     return chr(code) if 0 <= code <= 0x10FFFF else match[0]
 
 
-def _node(record: _Record) -> Node:
+def _node(record: _Record, is_drawn: bool) -> Node:
+    """Return a node; where the editor yEd draws it, y points down."""
     if "id" not in record:
         raise UnreadableTopology("a node has no id: give every node one")
+    drawing = record.get("graphics")
+    if is_drawn and isinstance(drawing, dict) and "y" in drawing:
+        record = {**record, "graphics": {**drawing, "y": turned_up(str(drawing["y"]))}}
     return Node(record["id"], [key for key in ("label", "name") if key in record], record, place_of(record))
 
 

@@ -20,7 +20,7 @@ from robustness.digraph import Digraph
 from robustness.errors import UnreadableTopology
 from robustness.files.found import Found, Link, Node, ReadingOptions, graph_of
 from robustness.files.text import texts_of, warn_lossy
-from robustness.places import place_of
+from robustness.places import place_of, turned_up
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -303,7 +303,7 @@ class _Inspector:
             case "nodelabel" if owner is not None:
                 self.reading = ("nodelabel", [])
             case "geometry" | "position" if owner is not None:
-                owner.attributes.update({key: attributes[key] for key in ("x", "y") if key in attributes})
+                owner.attributes.update(_drawn_place(name, attributes))
             case "attvalue" if owner is not None and "value" in attributes:
                 key = attributes.get("for", attributes.get("id", ""))
                 owner.attributes.setdefault(self.keys.get(key, key), attributes["value"])
@@ -351,3 +351,11 @@ class _Inspector:
                 self.owners.pop()
             case "link" if self.root == "network":
                 self.owners.pop()
+
+
+def _drawn_place(element: str, attributes: dict[str, str]) -> dict[str, str]:
+    """Return the x and y of an element that places a node; those of yEd's geometry point down."""
+    found = {str(key): attributes[key] for key in ("x", "y") if key in attributes}
+    if element == "geometry" and "y" in found:
+        found["y"] = turned_up(found["y"])
+    return found

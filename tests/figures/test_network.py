@@ -22,7 +22,7 @@ from robustness.digraph import as_digraph
 from robustness.errors import InvalidParameter
 from robustness.figures.marking import marks_of
 from robustness.figures.network import draw_to_file
-from robustness.figures.placement import positions_in
+from robustness.figures.placement import moved_apart, positions_in
 from robustness.figures.saving import new_figure
 from robustness.simulation import find_attack
 from robustness.traps import find_trap
@@ -228,9 +228,78 @@ class TestNames:
                 up = max(box.y0 - y, 0, y - box.y1)
                 assert (across**2 + up**2) ** 0.5 > 0.9 * radius
 
+    @pytest.mark.parametrize(
+        "graph",
+        [
+            nx.DiGraph([(f"Truck {k}", f"Truck {(k + step) % 9}") for k in range(9) for step in (1, 2)]),
+            nx.DiGraph([(f"leaf {k}", "the hub") for k in range(6)]),
+            nx.DiGraph([("left end", "middle"), ("middle", "right end"), ("below it", "middle")]),
+        ],
+    )
+    def test_no_name_covers_the_head_of_an_arc(self, graph: nx.DiGraph) -> None:
+        figure = new_figure(9, 7)
+        ax = rb.draw(graph, ax=figure.subplots())
+        figure.draw_without_rendering()
+        boxes = [text.get_window_extent() for text in ax.texts]
+        heads = [ax.transData.transform(arrow.get_path().vertices[3:6]) for arrow in ax.patches]
+        assert len(heads) == graph.number_of_edges()
+        covered = [box.bounds for box in boxes for head in heads if any(box.contains(*corner) for corner in head)]
+        assert covered == []
+
+    def test_names_of_a_crowd_are_left_out_where_they_find_no_place(self) -> None:
+        crowd = nx.relabel_nodes(nx.empty_graph(900), lambda k: f"station {k}")
+        few = {"station 7", "station 9"}
+        figure = new_figure(10, 8)
+        pos = {f"station {k}": (k % 30, k // 30) for k in range(900)}
+        ax = rb.draw(crowd, (few, set(crowd) - few), pos=pos, ax=figure.subplots())
+        figure.draw_without_rendering()
+        assert few < {text.get_text() for text in ax.texts}
+        assert len(ax.texts) < 900
+        sizes = [group.get_sizes()[0] ** 0.5 for group in ax.collections if isinstance(group, PathCollection)]
+        assert max(sizes) < 13
+        last = [group for group in ax.collections if isinstance(group, PathCollection)][-1]
+        assert len(last.get_offsets()) == 2
+
     def test_short_names_stand_on_their_nodes(self) -> None:
         ax = rb.draw(PETERSEN, ax=axes())
         assert {tuple(text.get_position()) for text in ax.texts} == {tuple(text.xy) for text in ax.texts}
+
+
+class TestRoom:
+    @pytest.mark.parametrize("name", ["sndlib/germany50", "topozoo/Geant2012", "one place", "in a row"])
+    def test_nodes_hide_no_node(self, name: str) -> None:
+        if name == "one place":
+            graph: Any = nx.relabel_nodes(nx.path_graph(9), str)
+            nx.set_node_attributes(graph, {str(k): (0, 0) if k < 5 else (k, 1) for k in range(9)}, "pos")
+        elif name == "in a row":
+            graph = nx.path_graph(12)
+            nx.set_node_attributes(graph, {k: (k**3, 0) for k in range(12)}, "pos")
+        else:
+            graph = rb.read_topology(f"topohub:{name}")
+        figure = new_figure(10, 8)
+        ax = rb.draw(graph, ax=figure.subplots())
+        figure.draw_without_rendering()
+        (nodes,) = [each for each in ax.collections if isinstance(each, PathCollection)]
+        centres = ax.transData.transform(nodes.get_offsets())
+        wide = nodes.get_sizes()[0] ** 0.5 * figure.dpi / 72
+        apart = min(float(np.hypot(*(one - two))) for one, two in combinations(centres, 2))
+        assert apart > 0.9 * wide
+
+    def test_nodes_that_have_room_keep_their_place(self) -> None:
+        places = {0: (0.0, 0.0), 1: (1.0, 0.0), 2: (1.0, 0.001), 3: (0.5, 1.0)}
+        moved = moved_apart(places, np.array([300.0, 300.0]), 20.0)
+        assert (moved[0], moved[3]) == (places[0], places[3])
+        assert 20 <= 300 * float(np.hypot(*(np.array(moved[1]) - moved[2]))) < 25
+
+    def test_nobody_stands_between_the_sides(self) -> None:
+        graph = nx.DiGraph([(1, 3), (3, 1), (2, 5), (5, 2), (1, 5), (2, 3), (4, 1), (4, 3)])
+        ax = rb.draw(graph, ({1, 2}, {3, 5}), ax=axes())
+        groups = {each.get_label(): each.get_offsets() for each in ax.collections if isinstance(each, PathCollection)}
+        lowest = min(offsets[:, 1].min() for name, offsets in groups.items() if name.startswith("S"))
+        assert groups["other: 1 node"][:, 1].max() < lowest
+
+    def test_a_network_without_nodes_says_so(self) -> None:
+        assert [text.get_text() for text in rb.draw(nx.empty_graph(0), ax=axes()).texts] == ["a network without nodes"]
 
 
 class TestShape:

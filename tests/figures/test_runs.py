@@ -20,7 +20,7 @@ import robustness as rb
 from cli.main import robustness
 from robustness.errors import InvalidParameter, MissingExtra
 from robustness.figures.animation import animate
-from robustness.figures.simulation import Run, draw_outcome, draw_runs
+from robustness.figures.simulation import LIAR_COLOR, Run, draw_outcome, draw_runs
 from robustness.figures.time_span import last_step_shown
 from robustness.files import write_topology
 from robustness.simulation import ADVERSARIES, find_attack, random_start
@@ -251,6 +251,29 @@ class TestToldApart:
             line.get_zorder() for line in ax.lines if line.get_label() == "_"
         )
 
+    def test_liars_who_say_the_same_have_one_line_and_others_marks_of_their_own(self) -> None:
+        graph = nx.complete_graph(7)
+        same = rb.simulate(graph, f=2, malicious=[5, 6], adversary="sine", steps=60).plot(ax=axes())
+        assert [text.get_text() for text in same.get_legend().get_texts()][-1] == "{5, 6} say"
+        other = rb.simulate(graph, f=2, malicious=[5, 6], adversary="random", steps=60).plot(ax=axes())
+        claims = [line for line in other.lines if "say" in str(line.get_label())]
+        assert len(claims) >= 2
+        assert len({line.get_marker() for line in claims}) == len(claims)
+
+    def test_a_claim_that_is_a_curve_as_well_is_seen(self) -> None:
+        ax = find_attack(WHEEL, 1, "delayed").attack.run(30, record=True).plot(ax=axes())
+        claims = [line for line in ax.lines if line.get_color() == LIAR_COLOR]
+        assert claims
+        assert all(line.get_marker() not in ("None", "", None) for line in claims)
+
+    def test_long_names_leave_room_for_the_curves(self) -> None:
+        figure = Figure(figsize=(8, 4.2), layout="constrained")
+        graph = nx.relabel_nodes(nx.complete_graph(9), lambda k: f"a station with a long name {k}")
+        ax = rb.simulate(graph, steps=20).plot(ax=figure.subplots())
+        figure.draw_without_rendering()
+        assert ax.get_window_extent().width > 0.55 * figure.bbox.width
+        assert figure.bbox.contains(*ax.get_legend().get_window_extent().max)
+
     def test_lanes_of_a_film_are_in_natural_order_from_the_top(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
@@ -270,7 +293,13 @@ class TestToldApart:
         dots, crosses = ax.collections
         assert [y for _, y in crosses.get_offsets()] == [11]
         assert sorted(y for _, y in dots.get_offsets()) == list(range(11))
+        assert ax.get_xlabel().splitlines()[0] == outcome.plot(ax=axes()).get_ylabel() == "position p"
         assert "cross: what {n11} claims" in ax.get_xlabel()
+        drawn[0].draw_without_rendering()
+        (clock,) = ax.texts
+        assert clock.get_text().startswith("step")
+        low = ax.transData.transform((0, 11))[1]
+        assert clock.get_window_extent().y1 < low - 46**0.5 / 2 * drawn[0].dpi / 72
 
 
 class TestFilms:
