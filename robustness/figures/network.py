@@ -203,6 +203,7 @@ def _draw_group(
         edgecolors="#404040", linewidths=0.8, ax=axes,
     )  # fmt: skip
     drawn.set_label(_told(name, group))
+    drawn.set_clip_on(False)  # axes of equal scale may end in the middle of a node
     return drawn
 
 

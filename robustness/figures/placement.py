@@ -161,11 +161,31 @@ def _circle(nodes: list[int], centre: tuple[float, float], radius: float) -> Pos
 
 
 def _spread(graph: Digraph) -> Positions:
-    """Return places: on a circle for dense and for small graphs, otherwise by springs from a fixed start."""
+    """Return places: the parts of a network that no link joins side by side, the largest first, as in a text."""
     shape = nx.Graph()
     shape.add_nodes_from(range(graph.n))
     shape.add_edges_from(graph.arcs())
-    if graph.n < 3 or nx.density(shape) > _DENSE:
-        return _circle(list(range(graph.n)), (0.0, 0.0), 1.0)
-    placed = nx.spring_layout(shape, seed=1, iterations=300, k=1.6 / math.sqrt(graph.n))
+    parts = sorted((sorted(part) for part in nx.connected_components(shape)), key=lambda part: (-len(part), part))
+    if len(parts) < 2:
+        return _part(shape, 1.0)
+    radii = [math.sqrt(len(part) - 0.9) for part in parts]
+    line = max(2 * radii[0], 2.4 * math.sqrt(sum((radius + 0.3) ** 2 for radius in radii)))
+    places: Positions = {}
+    x = y = 0.0
+    tall = 2 * radii[0]
+    for part, radius in zip(parts, radii, strict=True):
+        if x > 0 and x + 2 * radius > line:
+            x, y, tall = 0.0, y - tall - 0.7, 2 * radius
+        inner = _part(shape.subgraph(part), radius)
+        places.update({node: (x + radius + across, y - tall / 2 + up) for node, (across, up) in inner.items()})
+        x += 2 * radius + 0.7
+    return places
+
+
+def _part(shape: nx.Graph, radius: float) -> Positions:
+    """Return places within this distance: on a circle for dense and for small graphs, else by springs, fixed start."""
+    nodes = sorted(shape)
+    if len(nodes) < 3 or nx.density(shape) > _DENSE:
+        return _circle(nodes, (0.0, 0.0), radius)
+    placed = nx.spring_layout(shape, seed=1, iterations=300, k=1.6 / math.sqrt(len(nodes)), scale=radius)
     return {node: (float(place[0]), float(place[1])) for node, place in placed.items() if np.isfinite(place).all()}

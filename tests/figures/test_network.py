@@ -298,6 +298,22 @@ class TestRoom:
         lowest = min(offsets[:, 1].min() for name, offsets in groups.items() if name.startswith("S"))
         assert groups["other: 1 node"][:, 1].max() < lowest
 
+    @pytest.mark.parametrize(
+        "graph",
+        [nx.disjoint_union(nx.path_graph(2), nx.empty_graph(1)), nx.disjoint_union(nx.cycle_graph(5), nx.path_graph(4)),
+         nx.empty_graph(7), nx.disjoint_union_all([nx.cycle_graph(4)] * 3)],
+    )  # fmt: skip
+    def test_what_no_link_joins_stands_side_by_side(self, graph: nx.Graph) -> None:
+        ax = rb.draw(graph, ax=axes())
+        (nodes,) = [each for each in ax.collections if isinstance(each, PathCollection)]
+        near = [sorted(float(np.hypot(*(one - two))) for two in nodes.get_offsets())[1] for one in nodes.get_offsets()]
+        assert max(near) < 4 * min(near)
+
+    def test_no_node_is_cut_off(self) -> None:
+        ax = new_figure(8, 3).subplots()
+        rb.draw(nx.empty_graph(7), ax=ax)
+        assert [each.get_clip_on() for each in ax.collections if isinstance(each, PathCollection)] == [False]
+
     def test_a_network_without_nodes_says_so(self) -> None:
         assert [text.get_text() for text in rb.draw(nx.empty_graph(0), ax=axes()).texts] == ["a network without nodes"]
 
