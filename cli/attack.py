@@ -28,7 +28,9 @@ _STEPS = 12
 
 @click.command("attack")
 @graph_argument
-@click.option("-f", "f", type=click.IntRange(min=0), default=1, show_default=True, help="How many nodes may lie.")
+@click.option(
+    "-f", "f", type=click.IntRange(min=0), metavar="F", default=1, show_default=True, help="How many nodes may lie."
+)
 @click.option(
     "--model",
     type=click.Choice(THREAT_MODEL_NAMES),
@@ -36,12 +38,17 @@ _STEPS = 12
     show_default=True,
     help="One lie for all; different lies (byzantine); or delays that show two faces. -local: F around every node.",
 )
-@click.option("-T", "--sampling-period", "period", type=float, help="With these three: is agreement promised ...")
-@click.option("--alpha", type=float, help="... for nodes with this gain ...  [default: 1.5/T]")
-@click.option("--sigma", type=float, help="... whose kept weights add up to at most this?  [default: weights 1/d]")
+@click.option(
+    "-T", "--sampling-period", "period", type=float, metavar="T", help="With these three: is agreement promised ..."
+)
+@click.option("--alpha", type=float, metavar="A", help="... for nodes with this gain ...  [default: 1.5/T]")
+@click.option(
+    "--sigma", type=float, metavar="S", help="... whose kept weights add up to at most this?  [default: weights 1/d]"
+)
 @click.option(
     "--steps",
     type=click.IntRange(min=1),
+    metavar="N",
     default=_STEPS,
     show_default=True,
     help="How long it is played; it repeats after two.",

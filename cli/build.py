@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from robustness.spelled import counted
+
 from .exit_codes import ExitCode
 from .options import json_option, talk_options
 from .output import Console, graph_document, pass_console
@@ -158,7 +160,7 @@ def _build(console: Console, name: str, parameters: Mapping[str, Any], output: s
         console.result(encode_with_attributes(graph).decode("ascii").rstrip("\n"))
     # What is said is the result when the graph itself goes to a file.
     say = console.talk if as_json or output is None else console.result
-    say(f"{name}: {len(graph)} nodes, {graph.size()} {'arcs' if graph.is_directed() else 'edges'}")
+    say(f"{name}: {counted(len(graph), 'node')}, {graph.size()} {'arcs' if graph.is_directed() else 'edges'}")
     say(_known_text(known))
     if "trap" in graph.graph:
         say("trap: " + ", ".join(f"{key} = {nodes}" for key, nodes in graph.graph["trap"].items()))

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from robustness.spelled import counted, plural
+
 from .exit_codes import ExitCode
 from .interruption import Overrun
 from .options import graph_argument, load_graph
@@ -29,12 +31,14 @@ SCHEMA = "robustness/certify/1"
     "-o",
     "--output",
     type=click.Path(path_type=Path),
+    metavar="FILE",
     required=True,
     help="Where the certificate goes; FILE.gz is compressed.",
 )
 @click.option(
     "--canonical",
     type=click.Path(path_type=Path),
+    metavar="FILE",
     help="Also write the canonical graph, which 'python -m certificates verify' reads whatever GRAPH's format.",
 )
 @click.option(
@@ -44,7 +48,13 @@ SCHEMA = "robustness/certify/1"
     show_default=True,
     help="veripb: also write OUTPUT.opb and OUTPUT.pbp for a third party's checker.",
 )
-@click.option("--veripb-version", type=click.Choice(["3.0", "1.1"]), default="3.0", show_default=True)
+@click.option(
+    "--veripb-version",
+    type=click.Choice(["3.0", "1.1"]),
+    default="3.0",
+    show_default=True,
+    help="With veripb: the version of the proof format.",
+)
 @query_options(cluster=True)
 def command(
     ctx: click.Context,
@@ -119,7 +129,14 @@ def command(
             },
         )
     else:
-        _tell(console, result, f"{source}, {graph.n} nodes, {graph.arc_count} arcs", written, size, proof_format)
+        _tell(
+            console,
+            result,
+            f"{source}, {counted(graph.n, 'node')}, {counted(graph.arc_count, 'arc')}",
+            written,
+            size,
+            proof_format,
+        )
     if is_interrupted:
         console.error("interrupted: what is printed holds, nothing else is claimed")
         ctx.exit(ExitCode.INTERRUPTED)
@@ -139,5 +156,7 @@ def _tell(
     elif proof_format == "veripb" and result.verdict.value == "not-robust":
         console.talk("no VeriPB proof: that a graph is not robust is shown by the pair of sets in the certificate")
     for kind, path in written.items():
-        note = {"certificate": f" ({size:,} bytes, verified)", "cubes": " (for verify --jobs)"}.get(kind, "")
+        note = {"certificate": f" ({size:,} {plural(size, 'byte')}, verified)", "cubes": " (for verify --jobs)"}.get(
+            kind, ""
+        )
         console.talk(f"wrote {path}{note}")

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from robustness.spelled import counted
+
 from .exit_codes import ExitCode
 from .interruption import Overrun
 from .options import Seconds, graph_argument, load_graph
@@ -233,10 +235,10 @@ def _lines(report: Report, source: str, *, whole: bool) -> Iterator[str]:
     yield _headline(report)
     if report.witness is not None:
         yield _witness_heading(report)
-        yield f"  S1 = {set_text(report.witness.S1, whole=whole)}"
-        yield f"  S2 = {set_text(report.witness.S2, whole=whole)}"
+        yield f"  S1 = {set_text(report.witness.S1, graph.labels, whole=whole)}"
+        yield f"  S2 = {set_text(report.witness.S2, graph.labels, whole=whole)}"
     kind = "directed" if graph.directed else "undirected"
-    yield f"graph      {source}: {graph.n} nodes, {graph.arc_count} arcs, {kind}"
+    yield f"graph      {source}: {counted(graph.n, 'node')}, {counted(graph.arc_count, 'arc')}, {kind}"
     yield f"r* >= {bounds.lower.value:<4} {bounds.lower.reason}"
     yield f"r* <= {bounds.upper.value:<4} {bounds.upper.reason}"
     if report.s_bounds is not None and report.s_bounds.lower.value < report.s_bounds.upper.value:
@@ -282,7 +284,7 @@ def _witness_heading(report: Report) -> str:
         r, s = report.bounds.upper.value + 1, 1
     if s == 1:
         return f"no node of either set has {r} or more in-neighbours outside its own set:"
-    few = f"fewer than {r} in-neighbours outside its own set"
+    few = f"fewer than {counted(r, 'in-neighbour')} outside its own set"
     return f"in each set some node has {few}, and of all nodes of both fewer than {s} have {r} or more:"
 
 

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from robustness.spelled import counted
+
 from .build import encode_with_attributes, write_graph
 from .exit_codes import ExitCode
 from .interruption import Overrun
@@ -146,14 +148,15 @@ def _verdict_text(result: FindResult, nodes: range) -> str:
     fewest = ", no graph with fewer fits" if result.has_fewest_edges else ""
     match result.verdict:
         case FindVerdict.FOUND:
-            return f"found: {result.n} nodes, {result.edges} edges{fewest}{smaller}"
+            return f"found: {counted(result.n or 0, 'node')}, {counted(result.edges or 0, 'edge')}{fewest}{smaller}"
         case FindVerdict.IMPOSSIBLE:
             return f"impossible: no graph on {_numbers(nodes)} nodes fits"
         case _:
             reason = result.stats.get("reason", "a limit was reached")
             if result.graph is not None:
-                known = f"a graph with {result.edges} edges fits, whether one with {result.edges_at_least} does is open"
-                return f"undecided: on {result.n} nodes {known} ({reason})"
+                edges = counted(result.edges or 0, "edge")
+                known = f"a graph with {edges} fits, whether one with {result.edges_at_least} does is open"
+                return f"undecided: on {counted(result.n or 0, 'node')} {known} ({reason})"
             return f"undecided: {reason}{smaller}"
 
 

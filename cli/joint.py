@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from robustness.spelled import counted
+
 from .exit_codes import ExitCode
 from .interruption import Overrun
-from .options import asked_reading, reading_options
-from .output import Console, ProgressLine, set_document, set_text
+from .options import complete_files, load_sequence, reading_options
+from .output import Console, ProgressLine, set_text
 from .query import Query, query_options
 
 if TYPE_CHECKING:
+    from certificates.graph import Label
     from robustness.time_varying import JointResult, TimeVaryingGraph, Violation
 
 __all__ = ["SCHEMA", "command"]
@@ -70,7 +73,7 @@ class Report:
 
 
 @click.command("joint")
-@click.argument("source", metavar="SEQ")
+@click.argument("source", metavar="SEQ", shell_complete=complete_files)
 @reading_options
 @click.option("-r", type=click.IntRange(min=0), metavar="R", required=True, help="Jointly (R,S)-robust?")
 @click.option(
@@ -125,12 +128,11 @@ def command(
     """
     from robustness.errors import Undecided
     from robustness.files.writing import require_different_files
-    from robustness.time_varying import read_sequence
 
     if all_windows and window is None:
         raise click.UsageError("--all-windows decides every window of one length: give --window as well.")
     require_different_files([source], [picture, certificate, canonical])
-    sequence = read_sequence(source, period=period, step=step, both_ways=both_ways, reading=asked_reading())
+    sequence = load_sequence(source, period=period, step=step, both_ways=both_ways)
     with ProgressLine(console) as line:
         survey = Survey(sequence, r, s, tau, Clock(query.timeout), query, line, [])
         is_interrupted = False
@@ -266,7 +268,7 @@ def _violation_document(found: Violation | None) -> dict[str, Any] | None:
     if found is None:
         return None
     pair = found.witness
-    witness = None if pair is None else {"S1": set_document(pair.S1), "S2": set_document(pair.S2)}
+    witness = None if pair is None else pair.as_dict()
     return {"start": found.start, "length": found.length, "witness": witness}
 
 
@@ -274,15 +276,16 @@ def _lines(report: Report, source: str, *, with_curve: bool, whole: bool) -> Ite
     sequence, result = report.sequence, report.result
     yield _headline(result)
     if result.violation is not None:
-        yield from _violation_lines("violating window", result.violation, whole)
+        yield from _violation_lines("violating window", result.violation, sequence.labels, whole)
     if result.shorter_fails is not None:
-        yield from _violation_lines("one step shorter fails", result.shorter_fails, whole)
+        yield from _violation_lines("one step shorter fails", result.shorter_fails, sequence.labels, whole)
     if result.within_tau is not None:
         yield f"tau        {_tau_text(result)}"
-    yield f"sequence   {source}: {sequence.n} nodes, {_steps_text(sequence)}"
+    yield f"sequence   {source}: {counted(sequence.n, 'node')}, {_steps_text(sequence)}"
     if result.stats:
         rules = ", ".join(f"{n} {rule}" for rule, n in result.stats.items() if rule not in ("windows", "searches"))
-        yield f"windows    {result.stats['windows']} settled by {rules or 'none'}; {result.stats['searches']} searches"
+        searches = counted(result.stats["searches"], "search", "searches")
+        yield f"windows    {result.stats['windows']} settled by {rules or 'none'}; {searches}"
     if report.curve is not None:
         yield from _curve_table(report.curve)
     elif with_curve:
@@ -297,23 +300,23 @@ def _headline(result: JointResult) -> str:
         case "robust":
             verdict = click.style("robust:", fg="green", bold=True)
             smallest = "; no smaller number will do" if result.shorter_fails is not None else ""
-            return f"{verdict} the network is {name} over every {_count(result.window or 0)}{smallest}"
+            return f"{verdict} the network is {name} over every {_steps(result.window)}{smallest}"
         case "not-robust":
             verdict = click.style("not robust:", fg="red", bold=True)
-            over = f" over every {_count(result.asked_window)}" if result.asked_window else ""
+            over = f" over every {_steps(result.asked_window)}" if result.asked_window else ""
             return f"{verdict} the network is not {name}{over}{why}"
         case _:
             verdict = click.style("undecided:", fg="yellow", bold=True)
-            known = f"; fewer than {_count(result.at_least)} will not do" if result.at_least > 1 else ""
+            known = f"; fewer than {counted(result.at_least, 'step')} will not do" if result.at_least > 1 else ""
             return f"{verdict} whether the network is {name} is not known ({result.reason}){known}"
 
 
-def _violation_lines(title: str, found: Violation, whole: bool) -> Iterator[str]:
+def _violation_lines(title: str, found: Violation, nodes: Sequence[Label], whole: bool) -> Iterator[str]:
     last = found.start + found.length - 1
     yield f"{title}: " + (f"step {last}" if found.length == 1 else f"steps {found.start} to {last}")
     if found.witness is not None:
-        yield f"  S1 = {set_text(found.witness.S1, whole=whole)}"
-        yield f"  S2 = {set_text(found.witness.S2, whole=whole)}"
+        yield f"  S1 = {set_text(found.witness.S1, nodes, whole=whole)}"
+        yield f"  S2 = {set_text(found.witness.S2, nodes, whole=whole)}"
 
 
 def _tau_text(result: JointResult) -> str:
@@ -326,13 +329,13 @@ def _tau_text(result: JointResult) -> str:
 
 def _steps_text(sequence: TimeVaryingGraph) -> str:
     if sequence.period is None:
-        return f"a finite trace of {_count(len(sequence))}: its windows do not wrap"
-    before = f"{_count(sequence.prefix)}, then " if sequence.prefix else ""
-    return f"{before}a period of {_count(sequence.period)}: its windows wrap"
+        return f"a finite trace of {counted(len(sequence), 'step')}: its windows do not wrap"
+    before = f"{counted(sequence.prefix, 'step')}, then " if sequence.prefix else ""
+    return f"{before}a period of {counted(sequence.period, 'step')}: its windows wrap"
 
 
-def _count(steps: int) -> str:
-    return f"{steps} step" if steps == 1 else f"{steps} steps"
+def _steps(window: int | None) -> str:
+    return "step" if window == 1 else counted(window or 0, "step")
 
 
 def _curve_table(curve: Mapping[int, int | None]) -> Iterator[str]:

@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 import click
 
+from robustness.spelled import counted
+
 from .choices import THREAT_MODEL_NAMES
 from .exit_codes import ExitCode
 from .interruption import interruptibly
-from .options import asked_reading, jobs_option, reading_options, seed_option, timeout_option
+from .options import asked_reading, complete_files, jobs_option, reading_options, seed_option, timeout_option
 from .output import Console
 
 if TYPE_CHECKING:
@@ -27,7 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["ManyNetworks", "exit_code", "many_networks_options", "require_outputs_apart", "run_survey"]
 
 _OPTIONS: tuple[Callable[[Any], Any], ...] = (
-    click.argument("paths", nargs=-1, metavar="PATH..."),
+    click.argument("paths", nargs=-1, metavar="PATH...", shell_complete=complete_files),
     reading_options,
     click.option(
         "--from",
@@ -181,7 +183,7 @@ def run_survey(
 ) -> tuple[Survey, bool]:
     """Return the survey of the networks and whether it was interrupted; then it holds the rows that were finished."""
     from robustness.surveying import Survey, survey
-    from robustness.surveying.networks import Sources, expand
+    from robustness.surveying.networks import expand
 
     line = _Line(console)
 
@@ -208,7 +210,7 @@ def run_survey(
     except KeyboardInterrupt:
         # Threads finish in any order: the rows are put in that of the networks, and those left out are named.
         rows = {row.network: row for row in line.rows}
-        asked = expand(networks.paths) if rows else Sources((), ())
+        asked = expand(networks.paths)
         finished = tuple(rows[name] for name in asked.names if name in rows)
         missing = tuple(name for name in asked.names if name not in rows)
         return Survey(finished, networks.models, asked.notes, missing), True
@@ -224,7 +226,7 @@ def exit_code(console: Console, found: Survey, is_interrupted: bool, written: It
         console.error("interrupted: the rows that are shown hold, nothing is claimed about the other networks")
         return ExitCode.INTERRUPTED
     if found.missing:
-        console.talk(f"undecided: the time limit left {len(found.missing)} networks unasked")
+        console.talk(f"undecided: the time limit left {counted(len(found.missing), 'network')} unasked")
     return {
         "passed": ExitCode.DONE,
         "undecided": ExitCode.UNDECIDED,
@@ -248,7 +250,7 @@ class _Line:
         self.rows.append(row)
         spent = time.monotonic() - self._started
         left = spent / finished * (of - finished)
-        self._text = f"{finished} of {of} networks, about {left:.0f} s left, last {row.network}"
+        self._text = f"{finished} of {counted(of, 'network')}, about {left:.0f} s left, last {row.network}"
 
     def tick(self) -> None:
         """Draw the line anew."""

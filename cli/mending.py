@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from robustness.spelled import plural
+
 from .choices import THREAT_MODEL_NAMES
 from .exit_codes import ExitCode
 from .interruption import Overrun
-from .output import Console, ProgressLine, graph_document, label_text, set_text
+from .output import Console, ProgressLine, graph_document, set_text
 from .query import Query
 
 if TYPE_CHECKING:
@@ -307,22 +309,24 @@ def _facts(graph: Digraph) -> dict[str, Any]:
 
 
 def _lines(found: MendResult, before: dict[str, Any], after: dict[str, Any] | None) -> list[str]:
+    from robustness.spelled import Spelling, counted
+
     color = {"optimal": "green", "impossible": "red"}.get(found.verdict.value, "yellow")
     head, _, rest = found.summary().partition(":")
     lines = [f"{click.style(head + ':', fg=color, bold=True)}{rest}"]
-    arrow = "->" if found.one_way else "--"
-    shown = found.dropped if found.dropped else found.links
-    lines += [f"  {'drop' if found.dropped else 'add'}  {label_text(u)} {arrow} {label_text(v)}" for u, v in shown]
+    arrow, spelled = "->" if found.one_way else "--", Spelling(found.before.labels)
+    shown = found.dropped if found.thinned else found.links
+    lines += [f"  {'drop' if found.thinned else 'add'}  {spelled(u)} {arrow} {spelled(v)}" for u, v in shown]
     if found.witness is not None and found.witness.S1:
         lines.append(f"no candidate breaks this: {found.witness.goal}")
         sides = (("M", found.witness.M), ("S1", found.witness.S1), ("S2", found.witness.S2))
-        lines += [f"  {name:<3} {set_text(labels)}" for name, labels in sides if labels]
+        lines += [f"  {name:<3} {set_text(labels, found.before.labels)}" for name, labels in sides if labels]
     if found.reason:
         lines.append(f"stopped: {found.reason}")
     for name, facts in (("before", before), ("after", after)):
         if facts is not None:
             known = "" if facts["r"] is None else f", r* = {facts['r']}, s = {facts['s']}"
-            lines.append(f"{name:<7} {facts['links']} links{known}")
+            lines.append(f"{name:<7} {counted(facts['links'], 'link')}{known}")
     return lines
 
 
@@ -360,7 +364,7 @@ def _write(console: Console, path: Path, data: bytes | None) -> None:
         console.talk("no certificate: a limit was reached, or the kernel has no evidence of this kind")
     else:
         write_certificate(path, data)
-        console.talk(f"wrote {path} ({len(data):,} bytes, verified)")
+        console.talk(f"wrote {path} ({len(data):,} {plural(len(data), 'byte')}, verified)")
 
 
 def _certificate(found: MendResult, query: Query) -> bytes | None:

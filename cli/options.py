@@ -13,17 +13,22 @@ from .choices import ALGORITHM_NAMES, FORMAT_NAMES
 from .output import Console, write_help
 
 if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
     from robustness.digraph import Digraph
     from robustness.files.found import ReadingOptions
+    from robustness.time_varying import TimeVaryingGraph
 
 __all__ = [
     "Seconds",
     "algorithm_option",
     "asked_reading",
+    "complete_files",
     "graph_argument",
     "jobs_option",
     "json_option",
     "load_graph",
+    "load_sequence",
     "reading_options",
     "seed_option",
     "talk_options",
@@ -122,7 +127,14 @@ def reading_options(command: _Command) -> _Command:
 
 def graph_argument(command: _Command) -> _Command:
     """Add the argument GRAPH, as ``source``, and the reading options."""
-    return click.argument("source", metavar="GRAPH")(reading_options(command))
+    return click.argument("source", metavar="GRAPH", shell_complete=complete_files)(reading_options(command))
+
+
+def complete_files(ctx: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """Leave the names of files to the shell: what an argument means is settled by its reader, not by click."""
+    from click.shell_completion import CompletionItem
+
+    return [CompletionItem(incomplete, type="file")]
 
 
 def asked_reading() -> ReadingOptions:
@@ -164,7 +176,18 @@ def load_graph(source: str) -> Digraph:
     """Return the graph that GRAPH means; see :func:`robustness.files.read_topology`."""
     from robustness.files.front import read_with
 
-    return read_with(source, asked_reading())
+    graph = read_with(source, asked_reading())
+    click.get_current_context().ensure_object(Console).note_reading(graph.read_as)
+    return graph
+
+
+def load_sequence(source: str, **how: Any) -> TimeVaryingGraph:
+    """Return the sequence that GRAPH means; see :func:`robustness.time_varying.read_sequence`, which takes ``how``."""
+    from robustness.time_varying import read_sequence
+
+    sequence = read_sequence(source, reading=asked_reading(), **how)
+    click.get_current_context().ensure_object(Console).note_reading(sequence.read_as)
+    return sequence
 
 
 def _set_color(ctx: click.Context, _: click.Parameter, when: str | None) -> None:

@@ -14,11 +14,13 @@ import sys
 import textwrap
 import time
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, TextIO
 
 import click
+
+from robustness.spelled import plural
 
 if TYPE_CHECKING:
     from certificates.graph import Label
@@ -31,7 +33,6 @@ __all__ = [
     "Console",
     "ProgressLine",
     "graph_document",
-    "label_text",
     "pass_console",
     "set_document",
     "set_text",
@@ -58,6 +59,8 @@ class Console:
     #: Whether --json stands on the command line, and whether its document has been printed.
     as_json: bool = False
     has_document: bool = False
+    #: What has been warned of.
+    warned: list[str] = field(default_factory=list)
 
     def result(self, text: str) -> None:
         """Print a result on standard output."""
@@ -83,8 +86,14 @@ class Console:
             _write(_harmless(text), to_error=True)
 
     def warn(self, text: str) -> None:
-        """Say what the user should know about the input; -q silences it."""
+        """Say what the user may have to change in the input or the options; -q silences it."""
+        self.warned.append(text)
         self.talk(f"{click.style('warning:', fg='yellow')} {text}")
+
+    def note_reading(self, read_as: str) -> None:
+        """Say how a file was read where a word is due and no warning has said it; -q silences it."""
+        if ";" in read_as and not any(read_as in text for text in self.warned):
+            self.talk(f"note: read as: {read_as}")
 
     def error(self, text: str) -> None:
         """Say why the command ends."""
@@ -137,7 +146,7 @@ class ProgressLine:
             return
         self._drawn = now
         known = f"{self.bounds.lower.value} <= r* <= {self.bounds.upper.value}" if self.bounds else ""
-        visited = f"{self._nodes:,} nodes visited" if self._nodes else ""
+        visited = f"{self._nodes:,} {plural(self._nodes, 'node')} visited" if self._nodes else ""
         parts = (f"{now - self._started:.0f} s", known, visited, self.note or "starting")
         text = ", ".join(part for part in parts if part)
         self._text = text[: shutil.get_terminal_size().columns - 1]
@@ -161,12 +170,8 @@ def wrapped(text: str, *, indent: str = "", hanging: str = "") -> str:
 
 
 def graph_document(graph: Digraph) -> dict[str, Any]:
-    """Return what every JSON document says about the graph; an undirected edge is two arcs.
-
-    ``read_as`` says how its file was read; null for a graph that came from no file.
-    """
-    shape = {"nodes": graph.n, "arcs": graph.arc_count, "directed": graph.directed}
-    return {**shape, "sha256": graph.sha256, "read_as": graph.read_as or None}
+    """Return what every JSON document says about the graph; an undirected edge is two arcs."""
+    return graph.as_dict()
 
 
 def set_document(labels: Iterable[Label]) -> list[Label]:
@@ -176,21 +181,14 @@ def set_document(labels: Iterable[Label]) -> list[Label]:
     return in_natural_order(labels)
 
 
-def set_text(labels: Iterable[Label], *, whole: bool = False) -> str:
-    """Return a set of labels as text, in natural order; a long one is cut unless ``whole``."""
-    from robustness.showing import listed_in_words
+def set_text(labels: Iterable[Label], nodes: Iterable[Label], *, whole: bool = False) -> str:
+    """Return a set of labels as text, in natural order; a long one is cut unless ``whole``.
 
-    return listed_in_words(set_document(labels), None if whole else _LABELS_SHOWN, label_text)
-
-
-def label_text(label: object) -> str:
-    """Return a label as people write it; in quotes where it could be taken for something else than it is.
-
-    >>> label_text("Kiel"), label_text("4"), label_text(4), label_text("a, b")
-    ('Kiel', "'4'", '4', "'a, b'")
+    ``nodes`` are all of the network: labels are in quotes only where two of them would look alike.
     """
-    is_plain = isinstance(label, str) and re.fullmatch(r"[^\W\d_](?:[\w .:/-]*\w)?", label) is not None
-    return str(label) if is_plain else repr(label)
+    from robustness.spelled import Spelling, listed_in_words
+
+    return listed_in_words(set_document(labels), None if whole else _LABELS_SHOWN, Spelling(nodes))
 
 
 def _harmless(text: str) -> str:

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from robustness.spelled import counted
+
 from .many_networks import ManyNetworks, exit_code, many_networks_options, require_outputs_apart, run_survey
 from .output import Console
 from .query import speaking
@@ -61,6 +63,4 @@ def command(
     made = report_of(found, findings, proposals, title=title, gate=networks.gate, pictures=not no_pictures)
     made.write(output)
     console.result(headline(found, networks.gate))
-    ctx.exit(
-        exit_code(console, found, is_interrupted, [f"wrote {output} ({len(found)} network{'s' * (len(found) != 1)})"])
-    )
+    ctx.exit(exit_code(console, found, is_interrupted, [f"wrote {output} ({counted(len(found), 'network')})"]))

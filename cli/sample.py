@@ -31,8 +31,10 @@ SCHEMA = "robustness/sample/1"
     metavar="P",
     help="The chance of error that is allowed.",
 )
-@click.option("--nodes", type=click.IntRange(min=2), default=40, show_default=True, help="Of each sample.")
-@click.option("--repeats", type=click.IntRange(min=1), default=10, show_default=True, help="How many samples.")
+@click.option("--nodes", type=click.IntRange(min=2), metavar="N", default=40, show_default=True, help="Of each sample.")
+@click.option(
+    "--repeats", type=click.IntRange(min=1), metavar="N", default=10, show_default=True, help="How many samples."
+)
 @click.option(
     "--seed",
     type=click.IntRange(min=0, max=2**63 - 1),
@@ -79,24 +81,8 @@ def command(
         except Overrun as limit:
             found = SampleResult(SampleVerdict.UNDECIDED, r or 0, 1.0, nodes, repeats, 0, seed or 0, str(limit))
     if as_json:
-        console.document(SCHEMA, {"graph": graph_document(graph)} | _document(found))
+        console.document(SCHEMA, {"graph": graph_document(graph)} | found.as_dict())
     else:
         console.result(found.summary())
         console.talk(f"drawn with --seed {found.seed}")
     ctx.exit(ExitCode.UNDECIDED)
-
-
-def _document(found: SampleResult) -> dict[str, object]:
-    """Return what a test says, without the key ``verdict``, which is for what is proven."""
-    return {
-        "sample_verdict": found.verdict.value,
-        "is_proof": False,
-        "r": found.r,
-        "chance_of_error": found.chance,
-        "nodes": found.nodes,
-        "repeats": found.repeats,
-        "q": found.q,
-        "seed": found.seed,
-        "reason": found.reason,
-        "seconds": round(found.seconds, 6),
-    }

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from .choices import ADVERSARY_NAMES, EXPERIMENT_NAMES, FAULT_MODEL_NAMES, RULE_NAMES, SCHEDULE_NAMES
-from .options import reading_options
+from .options import complete_files, reading_options
 from .output import Console
 from .query import Query, query_options
 from .simulate_asked import SCHEMA, Simulation
@@ -19,7 +19,7 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 
 
 @click.command("simulate")
-@click.argument("source", metavar="[GRAPH]", required=False)
+@click.argument("source", metavar="[GRAPH]", required=False, shell_complete=complete_files)
 @reading_options
 @click.option(
     "--experiment",
@@ -30,28 +30,42 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 @click.option("--replay", type=_FILE, metavar="FILE", help="A run recorded with --save instead of GRAPH.")
 @click.option("--attack", "attack_file", type=_FILE, metavar="FILE", help="Play the attack that 'attack -o' wrote.")
 @click.option("--certificate", type=_FILE, metavar="FILE", help="Play the whole battery against a certificate.")
-@click.option("-f", "f", type=click.IntRange(min=0), help="The bound on faults.  [default: 1]")
+@click.option("-f", "f", type=click.IntRange(min=0), metavar="F", help="The bound on faults.  [default: 1]")
 @click.option("--malicious", multiple=True, metavar="NODE", help="May be repeated.  [default: the F heard by most]")
 @click.option(
     "--adversary",
     type=click.Choice(ADVERSARY_NAMES),
     default="auto",
     show_default=True,
-    help="auto: the attack that splits this network, where 5 seconds find one; else greedy.",
+    help="auto: the attack that splits this network, where a short search finds one; else greedy.",
 )
-@click.option("--rule", type=click.Choice(RULE_NAMES), default="adp-msr", show_default=True)
-@click.option("--model", type=click.Choice(FAULT_MODEL_NAMES), default="malicious", show_default=True)
-@click.option("--schedule", type=click.Choice(SCHEDULE_NAMES), default="synchronous", show_default=True)
-@click.option("--tau", type=click.IntRange(min=0), help="The bound on the age of values.  [default: 0 or 3]")
+@click.option("--rule", type=click.Choice(RULE_NAMES), default="adp-msr", show_default=True, help="What a node does.")
+@click.option(
+    "--model", type=click.Choice(FAULT_MODEL_NAMES), default="malicious", show_default=True, help="What liars may do."
+)
+@click.option(
+    "--schedule", type=click.Choice(SCHEDULE_NAMES), default="synchronous", show_default=True, help="Who updates when."
+)
+@click.option(
+    "--tau", type=click.IntRange(min=0), metavar="N", help="The bound on the age of values.  [default: 0 or 3]"
+)
 @click.option("--over-time", is_flag=True, help="GRAPH is a sequence of graphs, as 'joint' reads it.")
 @click.option("--period", "repeat", type=click.IntRange(min=1), metavar="P", help="With it: the last P steps repeat.")
 @click.option("--active", multiple=True, metavar="NODE", help="Senses actively; may be repeated.")
-@click.option("--steps", type=click.IntRange(min=1), default=1000, show_default=True)
-@click.option("--runs", type=click.IntRange(min=1), default=1, show_default=True, help="Random starts.")
-@click.option("-T", "--sampling-period", "period", type=float, default=1.0, show_default=True)
-@click.option("--speed", type=float, default=0.0, show_default=True, help="The target speed.")
-@click.option("--alpha", type=float, help="The gain of every node.  [default: 1.5/T]")
-@click.option("--weights", type=click.Choice(("uniform", "unit")), default="uniform", show_default=True)
+@click.option("--steps", type=click.IntRange(min=1), metavar="N", default=1000, show_default=True, help="How long.")
+@click.option("--runs", type=click.IntRange(min=1), metavar="N", default=1, show_default=True, help="Random starts.")
+@click.option(
+    "-T", "--sampling-period", "period", type=float, metavar="T", default=1.0, show_default=True, help="Of a step."
+)
+@click.option("--speed", type=float, metavar="V", default=0.0, show_default=True, help="The target speed.")
+@click.option("--alpha", type=float, metavar="A", help="The gain of every node.  [default: 1.5/T]")
+@click.option(
+    "--weights",
+    type=click.Choice(("uniform", "unit")),
+    default="uniform",
+    show_default=True,
+    help="Of links: 1/d, or 1.",
+)
 @click.option("--save", type=_FILE, metavar="FILE", help="Record the (first) run, or a counterexample.")
 @click.option(
     "--plot",

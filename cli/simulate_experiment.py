@@ -48,5 +48,5 @@ def _experiment_lines(title: str, results: Sequence[CaseResult]) -> Iterator[str
         said = "" if case.reported is None else f" (reported: {case.reported})"
         yield f"{outcome.verdict.value:<10} {case.name}{said}"
         yield f"           {case.reading}"
-        places = ", ".join(f"{set_text(labels)} at {value:.6g}" for value, labels in outcome.groups)
+        places = ", ".join(f"{set_text(labels, outcome.labels)} at {value:.6g}" for value, labels in outcome.groups)
         yield f"           {places}; gap {outcome.spread:.6g}" + (", exact" if outcome.exact else "")

@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from robustness.spelled import counted
+
 from .exit_codes import ExitCode
-from .options import asked_reading, load_graph
+from .options import load_graph, load_sequence
 from .output import Console, ProgressLine, graph_document, set_document, set_text
 from .query import Query
 from .simulate_asked import SCHEMA, Simulation
@@ -113,9 +115,7 @@ def _network(asked: Simulation) -> Topology:
 
     if not asked.over_time:
         return as_topology(load_graph(str(asked.source)), 1)
-    from robustness.time_varying import read_sequence
-
-    return as_topology(read_sequence(str(asked.source), period=asked.repeat, reading=asked_reading()), asked.steps)
+    return as_topology(load_sequence(str(asked.source), period=asked.repeat), asked.steps)
 
 
 def _scenario_of_attack(attack: Attack, asked: Simulation) -> Scenario:
@@ -173,7 +173,7 @@ def node_named(graph: Digraph, text: str) -> Label:
         if type(candidate) in (int, str, tuple) and candidate in graph.index:
             return candidate
     raise InvalidParameter(
-        f"a node is named by its label, but {text!r} is none: the nodes are {set_text(graph.labels)}"
+        f"a node is named by its label, but {text!r} is none: the nodes are {set_text(graph.labels, graph.labels)}"
     )
 
 
@@ -200,7 +200,9 @@ def _worst(
     attack = found.attack
     if attack is None:
         if found.outcome == "undecided":
-            console.talk(f"whether an attack splits it was not decided in short: {scenario.adversary} plays instead")
+            console.talk(
+                f"whether an attack splits it was not decided in short: {_in_words(scenario.adversary)} plays instead"
+            )
         return scenario, starts
     groups = (tuple(set_document(attack.S1)), tuple(set_document(attack.S2)))
     return replace(scenario, adversary=attack.adversary, groups=groups), [attack.start(seed=query.seed)]
@@ -223,8 +225,8 @@ def _document(scenario: Scenario, starts: list[Start], outcomes: Sequence[Outcom
         "rule": scenario.rule,
         "model": scenario.model,
         "f": scenario.f,
-        "adversary": repr(scenario.adversary),
-        "schedule": repr(scenario.schedule),
+        "adversary": _in_words(scenario.adversary),
+        "schedule": _schedule_in_words(scenario),
         "tau": scenario.schedule.oldest,
         "steps": scenario.steps,
         "runs": runs,
@@ -234,29 +236,42 @@ def _document(scenario: Scenario, starts: list[Start], outcomes: Sequence[Outcom
 def _lines(
     scenario: Scenario, starts: list[Start], outcomes: Sequence[Outcome], overall: str, *, whole: bool
 ) -> Iterator[str]:
+    nodes = scenario.network.union.labels
     yield _headline(overall, len(outcomes))
     for start, outcome in zip(starts, outcomes, strict=True):
-        yield f"malicious  {set_text(start.malicious, whole=whole)}, seed {start.seed}: {outcome.verdict.value}" + (
-            ", exactly" if outcome.exact else "" if outcome.diverged_at is None else f" at step {outcome.diverged_at}"
+        yield (
+            f"malicious  {set_text(start.malicious, nodes, whole=whole)}, seed {start.seed}: {outcome.verdict.value}"
+            + (
+                ", exactly"
+                if outcome.exact
+                else ""
+                if outcome.diverged_at is None
+                else f" at step {outcome.diverged_at}"
+            )
         )
         last = _last(scenario, outcome)
-        yield f"spread     {outcome.initial_spread:g} at first, {outcome.spread:g} after {last} steps" + (
+        yield f"spread     {outcome.initial_spread:g} at first, {outcome.spread:g} after {counted(last, 'step')}" + (
             "" if outcome.since is None else f", within the tolerance since step {outcome.since}"
         )
         if outcome.diverged_at is not None:
             yield f"gains      {outcome.promise_gap or 'inside the theory: please report'}"
         for value, labels in outcome.groups if outcome.verdict.value != "agreement" else ():
-            yield f"group      {set_text(labels, whole=whole)} at {value:g}"
+            yield f"group      {set_text(labels, nodes, whole=whole)} at {value:g}"
         if outcome.safe is not None:
             yield f"safety     {'kept: nobody left the hull of the start' if outcome.safe else 'LOST: please report'}"
         if outcome.rate is not None and outcome.contraction is not None:
             least, every = outcome.contraction
-            proven = f"on a network without a trap the spread loses at least {least:.2g} of itself in {every} steps"
+            steps = counted(every, "step")
+            proven = f"on a network without a trap the spread loses at least {least:.2g} of itself in {steps}"
             yield f"rate       {outcome.rate:.4g} a step, fitted; proven: {proven}"
     yield f"rule       {scenario.rule}, f = {scenario.f}, {scenario.model}, adversary {_in_words(scenario.adversary)}"
+    yield f"schedule   {_schedule_in_words(scenario)}"
+
+
+def _schedule_in_words(scenario: Scenario) -> str:
     schedule = scenario.schedule
-    oldest = f", values at most {schedule.tau} step{'s' * (schedule.tau != 1)} old" if schedule.tau else ""
-    yield f"schedule   {_in_words(schedule.update_times)}, {_in_words(schedule.delay_rule)}{oldest}"
+    oldest = f", values at most {counted(schedule.tau, 'step')} old" if schedule.tau else ""
+    return f"{_in_words(schedule.update_times)}, {_in_words(schedule.delay_rule)}{oldest}"
 
 
 def _in_words(part: object) -> str:
@@ -282,4 +297,6 @@ def _headline(overall: str, runs: int) -> str:
         "divergence": "normal nodes left every bound",
         "undecided": "neither agreement nor a constant gap at the horizon",
     }[overall]
-    return f"{click.style(overall + ':', fg=color, bold=True)} {what}" + (f", in {runs} runs" if runs > 1 else "")
+    return f"{click.style(overall + ':', fg=color, bold=True)} {what}" + (
+        f", in {counted(runs, 'run')}" if runs > 1 else ""
+    )

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from robustness.spelled import counted
+
 from .many_networks import ManyNetworks, exit_code, many_networks_options, require_outputs_apart, run_survey
 from .options import json_option
 from .output import Console
@@ -71,7 +73,7 @@ def command(
     written = []
     if output is not None:
         replace_file(output, content.encode())
-        written.append(f"wrote {output} ({len(found)} network{'s' * (len(found) != 1)})")
+        written.append(f"wrote {output} ({counted(len(found), 'network')})")
     if as_json:
         is_complete = not is_interrupted and not found.missing
         console.document(SCHEMA, found.as_dict() | {"is_complete": is_complete})

@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from robustness.spelled import counted, plural
+
 from .choices import THREAT_MODEL_NAMES
 from .exit_codes import ExitCode
 from .interruption import Overrun
-from .options import asked_reading, graph_argument, load_graph
+from .options import graph_argument, load_graph, load_sequence
 from .output import Console, ProgressLine, graph_document, set_text, wrapped
 from .query import Query, query_options
 
@@ -44,6 +46,7 @@ class Report:
     confirmed: dict[str, bool | None]
     required: int | None
     seconds: float
+    is_interrupted: bool = False
 
     def verdict(self) -> str | None:
         """Return what is known about the required f in the worst of the models, or None when none was required."""
@@ -162,7 +165,7 @@ def command(
             is_interrupted = isinstance(stop, KeyboardInterrupt)
             why = "interrupted" if is_interrupted else "the time limit was reached"
             table = _stopped(network, graph, model, (tau, delay, gap), finished, why)
-            report = Report(graph, table, dict.fromkeys(table), required, time.perf_counter() - started)
+            report = Report(graph, table, dict.fromkeys(table), required, time.perf_counter() - started, is_interrupted)
     if output is not None:
         _write_evidence(console, report, output, query)
     if query.as_json:
@@ -171,7 +174,8 @@ def command(
         console.answer(_lines(report, source, console))
     if is_interrupted:
         console.error(
-            f"interrupted: {len(finished)} models were finished; what is printed holds, nothing else is claimed"
+            f"interrupted: {counted(len(finished), 'model was', 'models were')} finished; what is printed "
+            "holds, nothing else is claimed"
         )
         ctx.exit(ExitCode.INTERRUPTED)
     ctx.exit(report.exit_code())
@@ -182,9 +186,7 @@ def _load(source: str, tau: int | None, period: int | None) -> tuple[Digraph | T
     if tau is None:
         graph = load_graph(source)
         return graph, graph
-    from robustness.time_varying import read_sequence
-
-    sequence = read_sequence(source, period=period, reading=asked_reading())
+    sequence = load_sequence(source, period=period)
     return sequence, sequence.union(0, len(sequence))
 
 
@@ -240,7 +242,7 @@ def _write_evidence(console: Console, report: Report, folder: Path, query: Query
             if data is not None:
                 path = folder / f"{result.model}-{what}-{f}.cert"
                 replace_file(path, data)
-                console.talk(f"wrote {path} ({len(data):,} bytes, verified)")
+                console.talk(f"wrote {path} ({len(data):,} {plural(len(data), 'byte')}, verified)")
             elif f is not None and f >= 0:
                 why = "too large, or a limit was reached" if report.graph.n >= 2 else "nobody can disagree"
                 console.talk(f"no certificate of {result.model}, f = {f} {what}: {why}")
@@ -305,7 +307,7 @@ def _lines(report: Report, source: str, console: Console) -> Iterator[str]:
             yield from _evidence(result, report.confirmed[result.model])
     kind = "directed" if graph.directed else "undirected"
     yield ""
-    yield f"graph      {source}: {graph.n} nodes, {graph.arc_count} arcs, {kind}"
+    yield f"graph      {source}: {counted(graph.n, 'node')}, {counted(graph.arc_count, 'arc')}, {kind}"
     if not console.is_verbose:
         yield "evidence   -v shows the theorem and the evidence for each line, -o DIR writes certificates and attacks"
     yield f"time       {report.seconds:.3f} s"
@@ -330,7 +332,9 @@ def _gate(report: Report) -> str:
     what = {
         "guaranteed": "agreement is guaranteed",
         "refuted": "an attack splits the network",
-        "undecided": "the time limit came first, so more time may tell",
+        "undecided": "it was interrupted first"
+        if report.is_interrupted
+        else "the time limit came first, so more time may tell",
         "open": "theory does not decide it from what is given, however long one looks",
     }[verdict]
     f = report.required or 0
@@ -360,6 +364,6 @@ def _evidence(result: ToleranceResult, confirmed: bool | None) -> Iterator[str]:
         sets = result.attack_sets
         if reason.standing.value == "refuted" and sets is not None:
             for name, labels in (("M", sets.M), ("S1", sets.S1), ("S2", sets.S2)):
-                yield f"          {name:<9} {set_text(labels, whole=True)}"
+                yield f"          {name:<9} {set_text(labels, result.graph.labels, whole=True)}"
             if confirmed:
                 yield "          simulated an exact split under every rule the attack is made for"

@@ -32,10 +32,12 @@ SCHEMA = "robustness/verify/1"
     type=click.Choice(["robust", "not-robust", "together", "apart"]),
     help="The verdict that must be proven; of malicious nodes: the network keeps together, or can be split apart.",
 )
-@click.option("-r", type=int, help="The r that the claim must be about, or imply.")
-@click.option("-s", type=int, help="The s that the claim must be about, or imply.")
+@click.option("-r", type=int, metavar="R", help="The r that the claim must be about, or imply.")
+@click.option("-s", type=int, metavar="S", help="The s that the claim must be about, or imply.")
 @click.option("--window", type=int, metavar="L", help="The number of steps that a joint claim must be about.")
-@click.option("-f", "f", type=int, help="The number of malicious nodes that the claim must be about, or imply.")
+@click.option(
+    "-f", "f", type=int, metavar="F", help="The number of malicious nodes that the claim must be about, or imply."
+)
 @click.option("--model", type=click.Choice(tuple(FACES)), help="With -f: the threat model that it must be about.")
 @click.option(
     "--checker",

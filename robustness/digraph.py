@@ -21,6 +21,8 @@ from certificates.errors import MalformedGraph
 from certificates.graph import Label, digest, encode_graph, label_key
 from robustness.errors import InvalidGraph
 from robustness.places import place_of
+from robustness.spelled import counted
+from robustness.told import Told, drawing, small_picture
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -33,7 +35,7 @@ class GraphWarning(UserWarning):
 
 
 @final
-class Digraph:
+class Digraph(Told):
     """An immutable digraph: labels in canonical order and, for every node, its in-neighbours.
 
     Parameters
@@ -261,9 +263,26 @@ class Digraph:
     def __hash__(self) -> int:
         return hash(self.sha256)
 
-    def __repr__(self) -> str:
+    def summary(self) -> str:
+        """Return how large it is, in one line."""
         kind = "directed" if self.directed else "undirected"
-        return f"<Digraph {kind}, {self.n} nodes, {self.arc_count} arcs>"
+        return f"{kind}, {counted(self.n, 'node')}, {counted(self.arc_count, 'arc')}"
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return what every document says about the graph, as JSON-ready values; an undirected edge is two arcs.
+
+        ``read_as`` says how its file was read; None for a graph that came from no file. The graph itself is in
+        :meth:`canonical_bytes`.
+        """
+        shape = {"nodes": self.n, "arcs": self.arc_count, "directed": self.directed}
+        return {**shape, "sha256": self.sha256, "read_as": self.read_as or None}
+
+    def evidence(self) -> list[tuple[str, str]]:
+        """Return what tells the graph from others, as rows of a name and a text."""
+        return [("sha256", self.sha256), *([("read as", self.read_as)] if self.read_as else [])]
+
+    def _small_picture(self) -> str:
+        return small_picture(self.n, lambda axes: drawing("network").draw(self, ax=axes))
 
 
 #: What the public functions accept as a graph.
@@ -292,7 +311,7 @@ def without_loops(ends: npt.NDArray[np.int64], place: str = "", *, stacklevel: i
     if not loops.any():
         return ends
     warnings.warn(
-        f"{place}{int(loops.sum())} self-loop(s) dropped: no robustness definition depends on them",
+        f"{place}{counted(int(loops.sum()), 'self-loop')} dropped: no robustness definition depends on them",
         GraphWarning,
         stacklevel=stacklevel,
     )

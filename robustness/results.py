@@ -14,34 +14,66 @@ from robustness.digraph import Digraph
 from robustness.errors import InternalError, Undecided
 from robustness.evidence import Evidence, Pair
 from robustness.natural_order import in_natural_order
-from robustness.showing import Shown, labels_in_words
+from robustness.showing import Shown
+from robustness.spelled import labels_in_words
+from robustness.told import Told
 
 __all__ = ["Bound", "Bounds", "RobustnessResult", "Verdict", "Witness"]
 
 
-class Witness(NamedTuple):
-    """A violating pair: nonempty disjoint node sets for which the definition fails."""
-
+class _Sets(NamedTuple):
     S1: frozenset[Label]
     S2: frozenset[Label]
+
+
+class Witness(Shown, _Sets):
+    """A violating pair: nonempty disjoint node sets for which the definition fails."""
+
+    __slots__ = ()
 
     @classmethod
     def of(cls, graph: Digraph, pair: Pair) -> Witness:
         """Return a pair of id sets as label sets."""
         return cls(graph.labels_of(pair.first), graph.labels_of(pair.second))
 
+    def summary(self) -> str:
+        """Return the two sets in one line."""
+        return ", ".join(f"{name} = {text}" for name, text in self.in_words())
 
-@dataclass(frozen=True, slots=True)
-class Bound:
+    def in_words(self, graph: Digraph | None = None) -> list[tuple[str, str]]:
+        """Return the name and the text of each set; with its graph, labels are in quotes only where two look alike."""
+        nodes = None if graph is None else graph.labels
+        return [("S1", labels_in_words(self.S1, nodes)), ("S2", labels_in_words(self.S2, nodes))]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the sets as JSON-ready values, in natural order."""
+        return {"S1": in_natural_order(self.S1), "S2": in_natural_order(self.S2)}
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Bound(Told):
     """One bound on r* (or on s_max(r*)), with the reason it holds and, for an upper bound, its pair if any."""
 
     value: int
     reason: str
     witness: Witness | None = None
 
+    def summary(self) -> str:
+        """Return the value and why it holds."""
+        return f"{self.value} ({self.reason})" if self.reason else f"{self.value}"
 
-@dataclass(frozen=True, slots=True)
-class Bounds:
+    def evidence(self) -> list[tuple[str, str]]:
+        """Return the pair of an upper bound, as rows of a name and a text."""
+        return [] if self.witness is None else self.witness.in_words()
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the bound as JSON-ready values."""
+        witness = None if self.witness is None else self.witness.as_dict()
+        return {"value": self.value, "reason": self.reason, "witness": witness}
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Bounds(Told):
     """What is proven: ``lower.value <= r* <= upper.value``, or the same of s_max(r)."""
 
     lower: Bound
@@ -100,6 +132,16 @@ class Bounds:
     def are_equal(self) -> bool:
         """Whether one value is left."""
         return self.lower.value == self.upper.value
+
+    def summary(self) -> str:
+        """Return what is proven in one line."""
+        if self.are_equal:
+            return f"exactly {self.lower.value}"
+        return f"at least {self.lower.summary()}, at most {self.upper.summary()}"
+
+    def evidence(self) -> list[tuple[str, str]]:
+        """Return why each bound holds, as rows of a name and a text."""
+        return [("at least", self.lower.summary()), ("at most", self.upper.summary()), *self.upper.evidence()]
 
     def as_dict(self) -> dict[str, Any]:
         """Return the bounds as JSON-ready values."""
@@ -219,25 +261,19 @@ class RobustnessResult(Shown):
         """Return what the answer rests on, as rows of a name and a text."""
         rows = [("algorithm", self.algorithm), ("seconds", f"{self.seconds:.3f}")]
         if self.witness is not None:
-            rows += [("S1", labels_in_words(self.witness.S1)), ("S2", labels_in_words(self.witness.S2))]
+            rows += self.witness.in_words(self.graph)
         if self.bounds is not None:
-            rows += [("r* at least", f"{self.bounds.lower.value} ({self.bounds.lower.reason})")]
-            rows += [("r* at most", f"{self.bounds.upper.value} ({self.bounds.upper.reason})")]
+            rows += [("r* at least", self.bounds.lower.summary())]
+            rows += [("r* at most", self.bounds.upper.summary())]
         return rows
 
     def as_dict(self) -> dict[str, Any]:
         """Return the answer as JSON-ready values (without the certificate, which is bytes of its own)."""
-        witness = self.witness
         return {
             "verdict": self.verdict.value,
             "r": self.r,
             "s": self.s,
-            "witness": None
-            if witness is None
-            else {
-                "S1": in_natural_order(witness.S1),
-                "S2": in_natural_order(witness.S2),
-            },
+            "witness": None if self.witness is None else self.witness.as_dict(),
             "bounds": None if self.bounds is None else self.bounds.as_dict(),
             "s_bounds": None if self.s_bounds is None else self.s_bounds.as_dict(),
             "profile": None if self.profile is None else {str(r): s for r, s in self.profile.items()},

@@ -293,7 +293,7 @@ class TestOptions:
         arcs = read(UNDIRECTED["tabs.txt"], ".txt", directed=True)
         assert (arcs.arc_count, arcs.directed) == (5, True)
         mixed = "Source,Target,Type\na,b,Directed\nb,c,Undirected\n"
-        assert read(mixed, ".csv").read_as.startswith("directed, 3 nodes, 2 links; 1 of the links run both ways")
+        assert read(mixed, ".csv").read_as.startswith("directed, 3 nodes, 2 links; 1 of the links runs both ways")
 
 
 class TestArrays:

@@ -143,4 +143,4 @@ def test_a_hundred_thousand_links() -> None:
     data = "".join(f"{(k * 7919) % 30011} {(k * 104729 + 1) % 30011}\n" for k in range(100_000)).encode()
     options = ReadingOptions(directed=True)
     assert said(data, ".edgelist", options, is_fast=True) == said(data, ".edgelist", options, is_fast=False)
-    assert re.search("read as: directed, 30011 nodes", str(said(data, ".edgelist", options, is_fast=True)))
+    assert re.search("directed, 30011 nodes", str(said(data, ".edgelist", options, is_fast=True)))

@@ -49,7 +49,7 @@ def run(*arguments: object) -> Result:
 def test_rows_are_what_the_single_questions_answer(folder: Path) -> None:
     found = rb.survey([folder])
     assert [Path(row.network).name for row in found] == ["path.json", "net2.json", "net10.json"]
-    assert [note.split(": ")[1] for note in found.notes] == ["1 file(s) passed over, whose suffix names no format"]
+    assert [note.split(": ")[1] for note in found.notes] == ["1 file passed over, whose suffix names no format"]
     for row in found:
         graph = rb.read_topology(row.network)
         known, table = rb.determine_robustness(graph), rb.tolerance(graph)

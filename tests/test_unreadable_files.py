@@ -118,7 +118,7 @@ class TestBadTextFiles:
     @pytest.mark.parametrize(
         ("text", "complaint"),
         [
-            ("a b\nc\n", "line 2: has 1 columns, but line 1 has 2"),
+            ("a b\nc\n", "line 2: has 1 column, but line 1 has 2"),
             ("a\nb\n", "line 1: an edge is two labels"),
             ("5 4\n1 2\n1 3\n2 4\n4 5\n", "may be a link, or the numbers of nodes and links: --skip-lines 1 if"),
             ("gain 1 2 -60\ngain 1 3 -60\n", "which may be a keyword or a node: --columns source=2,target=3"),
@@ -177,7 +177,7 @@ class TestBadTextFiles:
     @pytest.mark.parametrize(
         ("text", "complaint"),
         [
-            ("0,1\n1\n", "line 2: has 1 columns, but line 1 has 2"),
+            ("0,1\n1\n", "line 2: has 1 column, but line 1 has 2"),
             ("0,1,0,1\n1,0,1,0\n", "square, not 2 x 4"),
             ("1,2\n2,3\n", "may be a matrix and may be 2 links"),
             ("0,x,0,1\n1,0,1,0\n0,1,0,1\n1,0,1,0\n", "line 1, column 2: 'x' is not a number"),

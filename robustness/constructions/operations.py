@@ -27,6 +27,7 @@ from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidGraph, InvalidParameter, Undecided
 from robustness.json_labels import from_json
 from robustness.results import Verdict
+from robustness.spelled import counted
 
 __all__ = [
     "add_arcs",
@@ -223,7 +224,7 @@ def grow(base: Start, n: int, *, links: int | None = None, seed: int = 0) -> Gua
     """
     start = _start(base)
     graph = as_digraph(start.graph)
-    require(type(n) is int and n >= graph.n, f"n is at least the {graph.n} nodes present", n=n)
+    require(type(n) is int and n >= graph.n, f"n is at least the {counted(graph.n, 'node')} present", n=n)
     if links is None:
         links = min(start.guarantee.r + start.guarantee.s - 1, graph.n)
     require(0 <= links <= graph.n, f"links is in 0..{graph.n}, the nodes present", links=links)

@@ -35,6 +35,7 @@ from robustness.definitions import is_violation
 from robustness.digraph import Digraph, GraphWarning
 from robustness.evidence import Exhausted, Pair, Refutation
 from robustness.limits import Limits, Progress
+from robustness.spelled import counted
 from robustness.transcripts import Branch, Piece, Transcript
 
 __all__ = ["search_by_cubes"]
@@ -287,7 +288,7 @@ class _Spread:
             self.next_estimate = now + max(_ESTIMATE_EVERY, (time.monotonic() - now) / _ESTIMATE_SHARE)
         if self.limits.progress is not None and now - self.reported > 0.2:
             self.reported = now
-            cubes = f"{len(self.waiting) + len(self.running)} cubes open"
+            cubes = f"{counted(len(self.waiting) + len(self.running), 'cube')} open"
             note = cubes if self.estimate is None else f"{self.estimate.in_words()}, {cubes}"
             self.limits.progress(Progress(self.stats["nodes"], note))
 

@@ -27,6 +27,7 @@ from robustness.evidence import Convention, DegreeRule, Evidence, Growth, Refuta
 from robustness.limits import Limits, Progress
 from robustness.parallel_verification import verify_listing, write_with_cubes
 from robustness.results import RobustnessResult
+from robustness.spelled import counted
 from robustness.transcripts import Transcript
 from robustness.whole_numbers import taking_numpy_integers
 
@@ -107,7 +108,9 @@ def certify_within(
     """Do what :func:`certify` does for a question that is known to be valid, within ``limits``."""
     graph, r, s = question
     if r == 0 or (graph.n < 2 and r > largest_conceivable_r(graph.n)):
-        raise InvalidParameter(f"({r},{s})-robust on {graph.n} node(s) is settled by convention: nothing to certify")
+        raise InvalidParameter(
+            f"({r},{s})-robust on {counted(graph.n, 'node')} is settled by convention: nothing to certify"
+        )
     answer, proof = _proven(question, limits, shortest)
     result = RobustnessResult.of(question, answer)
     if proof is None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from robustness.natural_order import in_natural_order
-from robustness.showing import listed_in_words
+from robustness.spelled import listed_in_words
 
 __all__ = ["name_on_picture", "nodes_in_words", "plain"]
 

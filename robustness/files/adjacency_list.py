@@ -77,7 +77,8 @@ def lists_of(content: Content, options: ReadingOptions) -> Found:
         links = [Link(link.target, link.source) for link in links]
     way = "whom u hears" if options.rows == "hear" else "who hears u"
     notes = [f"lists of neighbours: node u lists {way}" if directed is not False else "lists of neighbours"]
-    return Found(nodes, links, True if directed is None else directed, notes, loss=loss)
+    is_doubtful = options.rows is None and directed is not False
+    return Found(nodes, links, True if directed is None else directed, notes, loss=loss, is_doubtful=is_doubtful)
 
 
 def refuse_lists_of_neighbours(rows: Rows, *, is_asked: bool) -> None:

@@ -19,6 +19,7 @@ from robustness.errors import MissingExtra, UnreadableTopology
 from robustness.files.found import Found, Link, Node, ReadingOptions, graph_of
 from robustness.files.text import decode_utf8, texts_of, warn_lossy
 from robustness.places import place_of
+from robustness.spelled import counted
 
 __all__ = ["decode", "encode"]
 
@@ -58,7 +59,7 @@ def decode(data: bytes, options: ReadingOptions) -> Digraph:
         place = f"line {match[1]}, column {match[2]}: " if match else ""
         raise UnreadableTopology(f"{place}this is not the DOT language")
     if len(graphs) > 1:
-        raise UnreadableTopology(f"holds {len(graphs)} graphs: keep one graph a file")
+        raise UnreadableTopology(f"holds {counted(len(graphs), 'graph')}: keep one graph a file")
     reader = _Reader(graphs[0].get_type() == "digraph")
     reader.take(graphs[0], {}, {})
     nodes = [

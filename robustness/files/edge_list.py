@@ -13,6 +13,7 @@ from collections.abc import Hashable, Mapping
 from robustness.errors import UnreadableTopology
 from robustness.files.found import COLUMN_NAMES, Found, Link, Node, ReadingOptions
 from robustness.files.rows import Content, Rows, bare, is_number, split_lines
+from robustness.spelled import counted
 
 __all__ = [
     "NO_ISOLATED",
@@ -30,7 +31,7 @@ _ARROW = re.compile(r"^(?P<u>\S.*?)\s*(?P<kind>->|--|<->)\s*(?P<v>\S.*?)\s*[;,]?
 _LOSS = "an edge list reads every label as text"
 #: What an edge list loses, and how links that it gives twice are told of.
 NO_ISOLATED = f"{_LOSS} and has no isolated nodes"
-PARALLEL = "{} given more than once count once"
+PARALLEL = "repeated one"
 
 
 def found_links(links: list[Link], directed: bool | None, *notes: str, nodes: list[str] | None = None) -> Found:
@@ -143,7 +144,7 @@ def without_counts(content: Content) -> tuple[Content, list[str] | None, list[st
                 "--skip-lines 1 leaves it out"
             )
         nodes = [str(k) for k in range(first, first + counts[0])]
-        return rest, nodes, [f"line {number} says {text} nodes"]
+        return rest, nodes, [f"line {number} says {counted(counts[0], 'node')}"]
     if counts[1] != len(lines) - 1 or counts[0] < len(labels) or not is_table:
         return content, None, []
     first = _numbered_from(numbers, counts[0]) if is_numbered else None
@@ -154,7 +155,7 @@ def without_counts(content: Content) -> tuple[Content, list[str] | None, list[st
             "--skip-lines 0 if it is a link"
         )
     nodes = [str(k) for k in range(first, first + counts[0])]
-    return rest, nodes, [f"line {number} says {counts[0]} nodes and {counts[1]} links"]
+    return rest, nodes, [f"line {number} says {counted(counts[0], 'node')} and {counted(counts[1], 'link')}"]
 
 
 def _numbered_from(numbers: set[int], count: int) -> int | None:
@@ -214,7 +215,9 @@ def links_of(
     told.append(f"links between columns {source + 1} and {target + 1}")
     if head is not None and rows.may_have_head:
         told.append(f"header on line {rows.lines[0]} skipped")
-    return found_links(links, rows.is_directed, *told, nodes=nodes)
+    found = found_links(links, rows.is_directed, *told, nodes=nodes)
+    found.is_doubtful = head is None and not options.columns and len(rows.cells[0]) > 2
+    return found
 
 
 def _head(rows: Rows, options: ReadingOptions) -> tuple[list[str] | None, list[list[str]], list[int]]:

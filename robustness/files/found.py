@@ -19,6 +19,7 @@ import numpy.typing as npt
 from robustness.digraph import Digraph, plain_label
 from robustness.errors import InvalidParameter, UnreadableTopology
 from robustness.files.text import warn_lossy
+from robustness.spelled import counted, plural
 
 __all__ = ["Found", "Link", "Node", "ReadingOptions", "graph_of", "parsed_columns"]
 
@@ -131,15 +132,16 @@ class Found:
         Whether links run one way where they say nothing themselves; None when the file does not say, which is then
         undirected and told.
     notes : list of str
-        What the reader took for granted; each makes a warning.
+        How the file was read, where a word is due; each is told.
     asked : list of str
-        What was done as the user asked; it is told and makes no warning.
+        What was done as the user asked; it is told as well.
     loss : str
-        What the format loses, told with every graph; empty: nothing.
-    is_certain : bool
-        Nothing but the notes was taken for granted: without them there is no warning.
+        What the format loses, told with every warning; empty: nothing.
+    is_doubtful : bool
+        The file can be read in another way than it was, so the line that says how is a warning. (A direction that
+        nobody says makes one too.)
     parallel : str
-        How links that are given twice are told of; empty: the format says that there may be some.
+        What a link that is given twice is called; empty: the format says that there may be some, so no word is due.
     """
 
     nodes: list[Node]
@@ -148,13 +150,13 @@ class Found:
     notes: list[str] = field(default_factory=list)
     asked: list[str] = field(default_factory=list)
     loss: str = ""
-    is_certain: bool = False
-    parallel: str = "{} parallel ones count once"
+    is_doubtful: bool = False
+    parallel: str = "parallel one"
     ends: npt.NDArray[np.int64] | None = None
 
 
 def graph_of(found: Found, options: ReadingOptions) -> Digraph:
-    """Return the graph that a reader found, and warn where something was taken for granted.
+    """Return the graph that a reader found, and warn where the file can be read in another way than it was.
 
     Raises
     ------
@@ -168,7 +170,8 @@ def graph_of(found: Found, options: ReadingOptions) -> Digraph:
     if found.ends is None:
         own[:] = [_CODES[link.one_way] for link in found.links]
     asked = list(found.asked)
-    default = _default_direction(found, options, ends[own < 0], asked)
+    said = _direction_said(found, options, ends[own < 0], asked)
+    default = bool(said)
     one_way = np.zeros(len(own), bool) if options.directed is False else np.where(own < 0, default, own == 1)
     directed = bool(one_way.any()) if len(own) else default
     kept = ends[ends[:, 0] != ends[:, 1]]
@@ -177,14 +180,16 @@ def graph_of(found: Found, options: ReadingOptions) -> Digraph:
     distinct = _count(_codes(np.where(is_single[:, None], kept, np.sort(kept, axis=1)), len(names), is_single))
     both = int((~is_single).sum())
     if directed and both:
-        notes.insert(0, f"{both} of the links run both ways")
+        notes.insert(0, f"{both} of the links {plural(both, 'runs', 'run')} both ways")
     if distinct < len(kept) and found.parallel:
-        notes.append(found.parallel.format(len(kept) - distinct))
+        again = len(kept) - distinct
+        notes.append(f"{counted(again, found.parallel)} {plural(again, 'counts', 'count')} once")
     if loops:
-        notes.append(f"{loops} self-loop(s) dropped: no robustness definition depends on them")
-    line = "; ".join([f"{_word(directed)}, {len(names)} nodes, {distinct} links", *notes, *asked])
-    if notes or not found.is_certain:
-        warn_lossy(f"read as: {line}{f'; {found.loss}' if found.loss else ''}")
+        notes.append(f"{counted(loops, 'self-loop')} dropped: no robustness definition depends on them")
+    line = "; ".join([f"{_word(directed)}, {counted(len(names), 'node')}, {counted(distinct, 'link')}", *notes, *asked])
+    if said is None or found.is_doubtful:
+        hints = [found.loss, "--directed if links run one way" if said is None else ""]
+        warn_lossy("; ".join([f"read as: {line}", *filter(None, hints)]))
     graph = Digraph.from_ends(
         list(names.values()),
         np.concatenate([kept, kept[~is_single][:, ::-1]]),
@@ -228,8 +233,8 @@ def _count(codes: npt.NDArray[np.int64]) -> int:
     return int((np.diff(np.sort(codes)) > 0).sum()) + (len(codes) > 0)
 
 
-def _default_direction(found: Found, options: ReadingOptions, silent: _Ends, asked: list[str]) -> bool:
-    """Return whether links that say nothing themselves (``silent``) run one way."""
+def _direction_said(found: Found, options: ReadingOptions, silent: _Ends, asked: list[str]) -> bool | None:
+    """Return whether links that say nothing themselves (``silent``) run one way; None: nobody says, so they do not."""
     if options.directed is not None:
         if found.directed is not None and found.directed != options.directed:
             asked.append(f"{_word(options.directed)} as asked, where the file says {_word(found.directed)}")
@@ -239,7 +244,7 @@ def _default_direction(found: Found, options: ReadingOptions, silent: _Ends, ask
     pairs = silent[silent[:, 0] != silent[:, 1]]
     n = len(found.nodes)
     if _count(_codes(pairs, n)) == _count(_codes(np.sort(pairs, axis=1), n)):
-        return False  # no link is given in both directions
+        return None if len(pairs) else False  # no link is given in both directions
     has_reverse = np.isin(_codes(pairs[:, ::-1], len(found.nodes)), _codes(pairs, len(found.nodes)))
     if has_reverse.any() and not has_reverse.all():
         twice, once = (

@@ -13,6 +13,7 @@ import numpy as np
 from robustness.digraph import Digraph
 from robustness.errors import InvalidGraph, InvalidParameter, UnreadableTopology
 from robustness.files.found import Found, Link, Node, ReadingOptions, graph_of
+from robustness.spelled import counted
 
 __all__ = ["from_adjacency", "from_edges", "from_igraph", "from_neighbours"]
 
@@ -65,7 +66,7 @@ def from_adjacency(
             raise InvalidGraph("an adjacency matrix is square, and these rows have different lengths") from None
     names = None if labels is None else list(labels)
     if names is not None and len(names) != A.shape[0]:
-        raise InvalidParameter(f"labels name all {A.shape[0]} nodes of the matrix, not {len(names)}")
+        raise InvalidParameter(f"labels name all {counted(A.shape[0], 'node')} of the matrix, not {len(names)}")
     try:
         return graph_of_matrix(A, ReadingOptions(rows=rows, directed=directed), names)
     except UnreadableTopology as problem:
@@ -93,7 +94,7 @@ def from_edges(edges: Iterable[Sequence[Any]], *, directed: bool, nodes: Iterabl
             raise InvalidGraph(f"edge {k}: a link is a pair (u, v), not {edge!r}")
         pairs.append(Link(edge[0], edge[1]))
     labels = dict.fromkeys([*nodes, *(end for link in pairs for end in (link.source, link.target))])
-    return graph_of(Found([Node(label) for label in labels], pairs, directed, is_certain=True), ReadingOptions())
+    return graph_of(Found([Node(label) for label in labels], pairs, directed), ReadingOptions())
 
 
 def from_neighbours(neighbours: Mapping[Hashable, Iterable[Hashable]], *, directed: bool | None = None) -> Digraph:
@@ -130,7 +131,7 @@ def from_neighbours(neighbours: Mapping[Hashable, Iterable[Hashable]], *, direct
         Link(*pair) for pair in {frozenset((u, v)): (u, v) for u, v in pairs}.values()
     ]  # fmt: skip
     nodes = [Node(label) for label in neighbours]
-    return graph_of(Found(nodes, links, is_directed, is_certain=True), ReadingOptions())
+    return graph_of(Found(nodes, links, is_directed), ReadingOptions())
 
 
 def from_igraph(graph: Any) -> Digraph:
@@ -138,5 +139,5 @@ def from_igraph(graph: Any) -> Digraph:
     names = graph.vs["name"] if "name" in graph.vs.attributes() else [None] * graph.vcount()
     labels = names if all(names) and len(set(names)) == len(names) else range(len(names))
     ends = np.array(graph.get_edgelist(), dtype=np.int64).reshape(-1, 2)
-    found = Found([Node(label) for label in labels], [], graph.is_directed(), is_certain=True, ends=ends)
+    found = Found([Node(label) for label in labels], [], graph.is_directed(), ends=ends)
     return graph_of(found, ReadingOptions())

@@ -201,7 +201,8 @@ def read_topology(
     Warns
     -----
     GraphWarning
-        When something was taken for granted, with the text of ``.read_as``.
+        When the file can be read in another way than it was, with the text of ``.read_as``, which says how. Where there
+        is one reading alone, ``.read_as`` says what became of labels, parallel links and self-loops, without a warning.
 
     See Also
     --------
@@ -341,7 +342,7 @@ def write_topology(graph: GraphLike, path: str | os.PathLike[str]) -> None:
     >>> place = pathlib.Path(tempfile.mkdtemp(), "square.json")
     >>> write_topology(networkx.cycle_graph(4), place)
     >>> read_topology(place)
-    <Digraph undirected, 4 nodes, 8 arcs>
+    <Digraph: undirected, 4 nodes, 8 arcs>
     """
     target = os.fspath(path)
     data = _encoder(format_suffix(target), target)(as_digraph(graph))

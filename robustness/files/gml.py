@@ -17,6 +17,7 @@ from robustness.errors import UnreadableTopology
 from robustness.files.found import Found, Link, Node, ReadingOptions, graph_of
 from robustness.files.text import decode_utf8, texts_of, warn_lossy
 from robustness.places import place_of, turned_up
+from robustness.spelled import counted, plural
 
 __all__ = ["decode", "encode"]
 
@@ -42,15 +43,16 @@ def decode(data: bytes, options: ReadingOptions) -> Digraph:
     known = {node.id for node in nodes}
     links = [_link(record, known, line, is_drawn) for kind, record, line in records if kind == "edge"]
     directed = str(settings.get("directed", 0)) == "1"
-    notes = []
+    notes: list[str] = []
     headless = sum(link.one_way is False for link in links) if directed and is_drawn else 0
     if headless:
-        notes.append(f"{headless} drawn without arrow heads run both ways")
+        notes.append(f"{headless} drawn without arrow heads {plural(headless, 'runs', 'run')} both ways")
     met = {end for link in links for end in (link.source, link.target)}
     kept = [node for node in nodes if node.id in met or str(node.attributes.get("isgroup", 0)) != "1"]
     if len(kept) < len(nodes):
-        notes.append(f"{len(nodes) - len(kept)} groups are boxes round nodes and no nodes")
-    return graph_of(Found(kept, links, directed, notes, loss="GML reads a quoted label as text"), options)
+        notes.append(f"{counted(len(nodes) - len(kept), 'group is a box', 'groups are boxes')} and no nodes")
+    loss = "GML reads a quoted label as text"
+    return graph_of(Found(kept, links, directed, notes, loss=loss, is_doubtful=bool(headless)), options)
 
 
 def _tokens(text: str) -> Iterator[tuple[int, str, str]]:
@@ -103,7 +105,7 @@ def _read(text: str) -> tuple[list[tuple[str, _Record, int]], _Record]:
     if names or key is not None:
         raise UnreadableTopology(f"line {line}: the file ends inside {names[-1] if names else key!r}: it was cut off")
     if graphs != 1:
-        raise UnreadableTopology(f"the file has {graphs} lists 'graph', where one is expected")
+        raise UnreadableTopology(f"the file has {counted(graphs, 'list')} 'graph', where one is expected")
     return records, settings
 
 

@@ -12,6 +12,7 @@ from robustness.digraph import Digraph
 from robustness.errors import InvalidGraph, UnreadableTopology
 from robustness.files.found import Found, Node, ReadingOptions, graph_of
 from robustness.files.text import warn_lossy
+from robustness.spelled import counted
 
 __all__ = [
     "NODE_LIMIT",
@@ -102,9 +103,9 @@ def _decode(
             raise UnreadableTopology(f"line {number}, column {column}: byte {byte:#04x} is not in '?' .. '~'")
     size, length = _decode_size(line[len(mark) :])
     if size > NODE_LIMIT:
-        raise UnreadableTopology(f"line {number}: announces {size} nodes, and at most {NODE_LIMIT} are read")
+        raise UnreadableTopology(f"line {number}: announces {counted(size, 'node')}, and at most {NODE_LIMIT} are read")
     ends = parse(line if mark == b":" else line[len(mark) + length :], size)
-    found = Found([Node(k) for k in range(size)], [], mark == b"&", [], is_certain=True, parallel="", ends=ends)
+    found = Found([Node(k) for k in range(size)], [], mark == b"&", [], parallel="", ends=ends)
     return graph_of(found, options)
 
 
@@ -130,9 +131,13 @@ def _encode_size(n: int) -> bytes:
 def _bits(body: bytes, count: int, n: int) -> npt.NDArray[np.uint8]:
     """Return ``count`` bits, six a byte, the padding checked."""
     if count > BIT_LIMIT:
-        raise UnreadableTopology(f"{n} nodes have {count} pairs, and at most {BIT_LIMIT} are read: write .json")
+        raise UnreadableTopology(
+            f"{counted(n, 'node')} have {counted(count, 'pair')}, and at most {BIT_LIMIT} are read: write .json"
+        )
     if len(body) != -(-count // 6):
-        raise UnreadableTopology(f"{n} nodes need {-(-count // 6)} bytes of arcs, and {len(body)} are there")
+        raise UnreadableTopology(
+            f"{counted(n, 'node')} need {counted(-(-count // 6), 'byte')} of arcs, and {len(body)} are there"
+        )
     bits = np.unpackbits((np.frombuffer(body, dtype=np.uint8) - 63).reshape(-1, 1), axis=1)[:, 2:].reshape(-1)
     if bits[count:].any():
         raise UnreadableTopology("the padding after the last arc is not zero")

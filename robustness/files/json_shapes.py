@@ -26,6 +26,7 @@ from robustness.errors import UnreadableTopology
 from robustness.files.found import COLUMN_NAMES, Found, Link, Node
 from robustness.files.json_text import flag, kind_of, label_of, list_of, plain_label
 from robustness.places import place_of
+from robustness.spelled import counted
 
 __all__ = ["found_in"]
 
@@ -122,7 +123,7 @@ def _json_graph_format(document: Mapping[str, Any]) -> Found:
     for i, row in enumerate(_objects({"edges": [], **graph}, "edges")):
         links.append(_link(row, f"edges[{i}]", flag(row, "directed", default=None)))
     found = [Node(label, _seen(row), {**_metadata(row), **row}, place_of(_metadata(row))) for label, row in named]
-    return Found(found, links, flag(graph, "directed", default=True), is_certain="directed" in graph)
+    return Found(found, links, flag(graph, "directed", default=True), is_doubtful="directed" not in graph)
 
 
 def _metadata(row: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -137,7 +138,7 @@ def _adjacency_data(document: Mapping[str, Any]) -> Found:
     ]
     lists = list_of(document, "adjacency")
     if len(lists) != len(nodes):
-        raise UnreadableTopology(f"'adjacency' has a list for each of {len(nodes)} nodes, not {len(lists)}")
+        raise UnreadableTopology(f"'adjacency' has a list for each of {counted(len(nodes), 'node')}, not {len(lists)}")
     directed = flag(document, "directed", default=None)
     links = []
     for i, (node, heads) in enumerate(zip(nodes, lists, strict=True)):
@@ -145,7 +146,7 @@ def _adjacency_data(document: Mapping[str, Any]) -> Found:
             raise UnreadableTopology(f"adjacency[{i}]: is a list, not {kind_of(heads)}")
         links += [Link(node.id, label_of(head, "id", f"adjacency[{i}][{k}]")) for k, head in enumerate(heads)]
     links = links if directed else _each_once(links)
-    return Found(nodes, links, directed, is_certain=directed is not None)
+    return Found(nodes, links, directed)
 
 
 def _each_once(links: list[Link]) -> list[Link]:
@@ -165,7 +166,7 @@ def _graphology(document: Mapping[str, Any]) -> Found:
     for i, row in enumerate(_objects({"edges": [], **document}, "edges")):
         one_way = kind == "directed" or (kind == "mixed" and not flag(row, "undirected", default=False))
         links.append(_link(row, f"edges[{i}]", one_way))
-    return Found(nodes, links, kind != "undirected", is_certain=True)
+    return Found(nodes, links, kind != "undirected")
 
 
 def _vis(document: Mapping[str, Any]) -> Found:
@@ -251,7 +252,7 @@ def _dict_of_neighbours(document: Mapping[str, Any]) -> Found:
     if all((v, u) in pairs for u, v in pairs):
         return Found([Node(label) for label in nodes], _each_once(links), False)
     # Lists that do not agree name each link once, or say who hears whom.
-    return Found([Node(label) for label in nodes], links, None, ["node u lists who hears u"])
+    return Found([Node(label) for label in nodes], links, None, ["node u lists who hears u"], is_doubtful=True)
 
 
 def _list_of_links(rows: list[Any]) -> Found | None:

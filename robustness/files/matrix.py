@@ -22,6 +22,7 @@ from robustness.errors import InvalidGraph, UnreadableTopology
 from robustness.files.found import Found, Node, ReadingOptions, graph_of
 from robustness.files.graph6 import warn_of_lost_labels
 from robustness.files.rows import Rows, is_number
+from robustness.spelled import counted
 
 __all__ = [
     "decode_npy",
@@ -76,8 +77,8 @@ def matrix_of_rows(rows: Rows, options: ReadingOptions, *, in_text: bool, is_ask
     if labels is None and not is_asked and not _is_surely_a_matrix(block):
         what = "with weights " if width > 2 else ""
         raise UnreadableTopology(
-            f"{height} rows of {width} numbers may be a matrix and may be {height} links {what}between nodes that are "
-            "numbers: say which with --format matrix or --format edge-list"
+            f"{height} rows of {width} numbers may be a matrix and may be {counted(height, 'link')} {what}"
+            "between nodes that are numbers: say which with --format matrix or --format edge-list"
         )
     if labels is not None and len(set(labels)) < len(labels):
         raise UnreadableTopology(f"line {lines[0]}: a label is given twice: give every node its own")
@@ -186,7 +187,7 @@ def decode_npy(data: bytes, options: ReadingOptions) -> Digraph:
         raise UnreadableTopology(f"an adjacency matrix is square, not {' x '.join(map(str, shape)) or 'one number'}")
     if math.prod(shape) * dtype.itemsize != len(data) - start:
         raise UnreadableTopology(
-            f"the array needs {math.prod(shape) * dtype.itemsize} bytes, and {len(data) - start} are there"
+            f"the array needs {counted(math.prod(shape) * dtype.itemsize, 'byte')}, and {len(data) - start} are there"
         )
     weights = np.load(io.BytesIO(data), allow_pickle=False)
     if dtype.kind != "f":
@@ -252,6 +253,7 @@ def graph_of_entries(
     """
     names: Sequence[Hashable] = range(n) if labels is None else labels
     said, asked = list(notes), []
+    is_doubtful = bool(notes)
     codes = np.unique(tails.astype(np.int64) * n + heads)
     tails, heads = np.divmod(codes, max(n, 1))
     is_symmetric = np.array_equal(codes, np.sort(heads * n + tails))
@@ -262,6 +264,7 @@ def graph_of_entries(
         elif options.rows == "speak":
             asked.append("a matrix, in which row u says who hears u, as asked")
         else:
+            is_doubtful = True
             said.append(
                 "a matrix, in which row u, column v says that v hears u; --rows hear if row u says whom u hears"
             )
@@ -272,7 +275,9 @@ def graph_of_entries(
         tails, heads = tails[kept], heads[kept]
     ends = np.stack([tails, heads], axis=1)
     directed = options.directed if options.directed is False else not is_symmetric
-    found = Found([Node(name) for name in names], [], directed, said, asked, is_certain=True, parallel="", ends=ends)
+    found = Found(
+        [Node(name) for name in names], [], directed, said, asked, parallel="", ends=ends, is_doubtful=is_doubtful
+    )
     # A symmetric matrix is the same graph whatever is asked of its direction.
     return graph_of(found, replace(options, directed=None, label_attribute=None))
 

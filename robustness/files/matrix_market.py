@@ -19,6 +19,7 @@ from robustness.files.graph6 import warn_of_lost_labels
 from robustness.files.matrix import graph_of_entries, graph_of_pattern, links_in
 from robustness.files.rows import is_number
 from robustness.files.text import decode_utf8
+from robustness.spelled import counted
 
 __all__ = ["CELL_LIMIT", "NODE_LIMIT", "decode", "encode", "graph_of_weights"]
 
@@ -56,7 +57,9 @@ def _sizes(row: tuple[int, list[str]], layout: str) -> tuple[int, int]:
     number, cells = row
     wanted = 3 if layout == "coordinate" else 2
     if len(cells) != wanted or not all(cell.isascii() and cell.isdigit() and len(cell) < 19 for cell in cells):
-        raise UnreadableTopology(f"line {number}: the sizes are {wanted} numbers, not {' '.join(cells)[:40]!r}")
+        raise UnreadableTopology(
+            f"line {number}: the sizes are {counted(wanted, 'number')}, not {' '.join(cells)[:40]!r}"
+        )
     sizes = [int(cell) for cell in cells]
     if sizes[0] != sizes[1]:
         raise UnreadableTopology(f"line {number}: an adjacency matrix is square, not {sizes[0]} x {sizes[1]}")
@@ -67,7 +70,7 @@ def _sizes(row: tuple[int, list[str]], layout: str) -> tuple[int, int]:
 
 def _coordinates(rows: _Lines, n: int, count: int, is_pattern: bool, symmetry: str, options: ReadingOptions) -> Digraph:
     if len(rows) != count:
-        raise UnreadableTopology(f"the sizes announce {count} entries, and {len(rows)} are there")
+        raise UnreadableTopology(f"the sizes announce {counted(count, 'entry', 'entries')}, and {len(rows)} are there")
     ends, values = [], []
     for number, cells in rows:
         if len(cells) != (2 if is_pattern else 3) or not all(cell.isascii() and cell.isdigit() for cell in cells[:2]):
@@ -95,7 +98,9 @@ def _array(rows: _Lines, n: int, count: int, is_pattern: bool, symmetry: str, op
         raise UnreadableTopology("line 1: an array holds numbers, general or symmetric")
     wanted = count if symmetry == "general" else n * (n + 1) // 2
     if len(rows) != wanted or any(len(cells) != 1 for _, cells in rows):
-        raise UnreadableTopology(f"the sizes announce {wanted} values, one a line, and {len(rows)} lines are there")
+        raise UnreadableTopology(
+            f"the sizes announce {counted(wanted, 'value')}, one a line, and {counted(len(rows), 'line')} are there"
+        )
     values = np.array([_value(number, cells[0]) for number, cells in rows])
     matrix = np.zeros((n, n))
     if symmetry == "general":

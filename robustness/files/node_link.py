@@ -54,8 +54,8 @@ def _node_link(document: Mapping[str, Any]) -> Found:
                 raise UnreadableTopology(f"{key}[{i}]: {end!r} is no node: add it to 'nodes'")
         said = {name: value for name, value in edge.items() if name not in ("source", "target")}
         links.append(Link(ends[0], ends[1], attributes=said))
-    parallel = "" if multigraph else "{} parallel edges count once"
-    return Found(nodes, links, directed, is_certain=directed is not None, parallel=parallel)
+    parallel = "" if multigraph else "parallel edge"
+    return Found(nodes, links, directed, parallel=parallel)
 
 
 def _nodes(rows: list[Any]) -> list[Node]:
@@ -80,7 +80,7 @@ def _canonical(data: bytes, options: ReadingOptions) -> Digraph:
     directed = any((i, j) not in arcs for j, i in arcs)
     labels = graph.labels
     links = [Link(labels[j], labels[i]) for j, i in sorted(arcs) if directed or j < i]
-    return graph_of(Found([Node(label) for label in labels], links, directed, is_certain=True), options)
+    return graph_of(Found([Node(label) for label in labels], links, directed), options)
 
 
 def encode(graph: Digraph) -> bytes:

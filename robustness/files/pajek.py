@@ -16,6 +16,7 @@ from robustness.files.found import Found, Link, Node, ReadingOptions, graph_of
 from robustness.files.rows import is_number
 from robustness.files.text import decode_utf8, texts_of, warn_lossy
 from robustness.places import place_of
+from robustness.spelled import counted
 
 __all__ = ["decode", "encode"]
 
@@ -46,7 +47,9 @@ def decode(data: bytes, options: ReadingOptions) -> Digraph:
     notes = reader.notes + [f"{name} is not the graph and left out" for name in reader.left_out]
     if reader.relations > 1:
         notes.append(f"{reader.relations} relations joined")
-    found = Found(nodes, reader.links, not both_ways, notes, loss="Pajek reads every label as text")
+    found = Found(
+        nodes, reader.links, not both_ways, notes, loss="Pajek reads every label as text", is_doubtful=bool(notes)
+    )
     return graph_of(found, options)
 
 
@@ -131,9 +134,8 @@ class _Reader:
     def matrix_row(self, number: int, cells: list[str]) -> None:
         self.row += 1
         if len(cells) != self.count or not all(map(is_number, cells)) or self.row > self.count:
-            raise UnreadableTopology(
-                f"line {number}: a matrix of {self.count} vertices has as many rows of as many numbers"
-            )
+            size = counted(self.count or 0, "vertex", "vertices")
+            raise UnreadableTopology(f"line {number}: a matrix of {size} has as many rows of as many numbers")
         self.matrix.update(dict.fromkeys((self.row, k) for k, cell in enumerate(cells, 1) if float(cell) != 0))
 
     def matrix_links(self) -> list[Link]:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 from robustness.errors import UnreadableTopology
 from robustness.files.text import decode_utf8
+from robustness.spelled import counted
 
 __all__ = ["Content", "Rows", "bare", "content_of", "is_number", "rows_of", "split_lines"]
 
@@ -156,10 +157,9 @@ def rows_of(content: Content) -> Rows:
     for number, row in zip(numbers, cells, strict=True):
         if len(row) != len(cells[0]):
             raise UnreadableTopology(
-                f"line {number}: has {len(row)} columns, but line {numbers[0]} has {len(cells[0])}: every line has the "
-                "same shape, a link or a row of a matrix; --format adjacency-list for lists of neighbours, "
-                "--skip-lines "
-                "for lines at the beginning that are something else"
+                f"line {number}: has {counted(len(row), 'column')}, but line {numbers[0]} has {len(cells[0])}: "
+                "every line has the same shape, a link or a row of a matrix; --format adjacency-list for lists of "
+                "neighbours, --skip-lines for lines at the beginning that are something else"
             )
     return Rows(cells, numbers, content.is_directed, separator, content.comment, content.skipped < 0)
 

@@ -18,6 +18,7 @@ from robustness.errors import MissingExtra, UnreadableTopology
 from robustness.files.found import ReadingOptions
 from robustness.files.matrix import graph_of_pattern, links_in
 from robustness.files.matrix_market import CELL_LIMIT, NODE_LIMIT, graph_of_weights
+from robustness.spelled import counted
 
 __all__ = ["decode_mat", "decode_npz", "graph_of_matrix", "is_sparse"]
 
@@ -41,7 +42,7 @@ def decode_npz(data: bytes, options: ReadingOptions) -> Digraph:
     except (zipfile.BadZipFile, ValueError, NotImplementedError) as problem:
         raise UnreadableTopology(f"is no .npz archive: {problem}") from None
     if size > BYTE_LIMIT:
-        raise UnreadableTopology(f"unpacks to {size} bytes, more than {BYTE_LIMIT}, the most that is read")
+        raise UnreadableTopology(f"unpacks to {counted(size, 'byte')}, more than {BYTE_LIMIT}, the most that is read")
     try:
         if {"format", "shape", "data"} <= names:
             return graph_of_matrix(_scipy("scipy.sparse", "a sparse .npz").load_npz(io.BytesIO(data)), options)

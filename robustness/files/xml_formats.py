@@ -21,6 +21,7 @@ from robustness.errors import UnreadableTopology
 from robustness.files.found import Found, Link, Node, ReadingOptions, graph_of
 from robustness.files.text import texts_of, warn_lossy
 from robustness.places import place_of, turned_up
+from robustness.spelled import counted, plural
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -49,8 +50,9 @@ def decode_xml(data: bytes, options: ReadingOptions) -> Digraph:
     met = {end for edge in found.edges for end in (edge.source, edge.target)}
     nodes = [node for node in found.nodes.values() if not node.is_group or node.id in met]
     notes = [note for note in found.notes() if note]
+    is_doubtful = bool(notes)
     if len(nodes) < len(found.nodes):
-        notes.append(f"{len(found.nodes) - len(nodes)} groups are boxes round nodes and no nodes")
+        notes.append(f"{counted(len(found.nodes) - len(nodes), 'group is a box', 'groups are boxes')} and no nodes")
     return graph_of(
         Found(
             [Node(node.id, _seen(node), node.attributes, place_of(node.attributes)) for node in nodes],
@@ -58,6 +60,7 @@ def decode_xml(data: bytes, options: ReadingOptions) -> Digraph:
             found.default_directed,
             notes,
             loss=f"{form} reads every label as text",
+            is_doubtful=is_doubtful,
         ),
         options,
     )
@@ -186,7 +189,7 @@ class _Inspector:
     def notes(self) -> Iterable[str]:
         """Return what was taken for granted about the whole document."""
         headless = sum(edge.is_headless for edge in self.edges)
-        yield f"{headless} drawn without arrow heads run both ways" if headless else ""
+        yield f"{headless} drawn without arrow heads {plural(headless, 'runs', 'run')} both ways" if headless else ""
         yield "times are left out: every link that is ever there counts" if self.is_dynamic else ""
         for kind, have in (("nodes", len(self.nodes)), ("edges", len(self.edges))):
             if self.counts.get(kind, have) != have:

@@ -26,6 +26,7 @@ from robustness.graph_search.properties import (
 from robustness.graph_search.results import FindResult, FindVerdict
 from robustness.graph_search.synthesis import synthesise
 from robustness.limits import Limits, Progress
+from robustness.spelled import counted
 from robustness.traps.smallest import smallest_trap
 from robustness.whole_numbers import taking_numpy_integers
 
@@ -133,7 +134,9 @@ def _find_on(n: int, search: _Search) -> FindResult:
     """Return the answer for one number of nodes."""
     listed = can_enumerate(n, directed=search.directed)
     if search.method == "enumeration" and not listed:
-        raise InvalidParameter(f"graphs on {n} nodes are not listed up to isomorphism: use method 'auto' or 'cp-sat'")
+        raise InvalidParameter(
+            f"graphs on {counted(n, 'node')} are not listed up to isomorphism: use method 'auto' or 'cp-sat'"
+        )
     if search.method == "enumeration" or (listed and (search.method == "auto" or n < 2)):
         try:
             graph = first_fitting(n, search.satisfies, search.violates, directed=search.directed, limits=search.limits)

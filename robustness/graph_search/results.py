@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from robustness.showing import Shown
+from robustness.spelled import counted
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -74,7 +75,9 @@ class FindResult(Shown):
         none = f"none on {', '.join(map(str, self.impossible_for))} nodes" if self.impossible_for else ""
         if self.verdict is FindVerdict.FOUND:
             fewest = ", the fewest possible" if self.has_fewest_edges else ""
-            return f"found: {self.n} nodes, {self.edges} edges{fewest}" + (f"; {none}" if none else "")
+            return f"found: {counted(self.n or 0, 'node')}, {counted(self.edges or 0, 'edge')}{fewest}" + (
+                f"; {none}" if none else ""
+            )
         return f"{self.verdict.value}: {none or 'a limit was reached'}"
 
     def evidence(self) -> list[tuple[str, str]]:

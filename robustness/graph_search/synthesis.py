@@ -26,6 +26,7 @@ from robustness.graph_search.properties import Connected, HasTrap, Property, RSR
 from robustness.limits import UNBOUNDED, Limits, Progress
 from robustness.results import Verdict
 from robustness.solver_calls import solve_within
+from robustness.spelled import counted
 from robustness.traps.smallest import smallest_trap
 
 __all__ = ["Synthesis", "small_violations", "synthesise"]
@@ -101,7 +102,9 @@ def _propose_until_it_fits(
         proposal = model.candidate(outcome.solver)
         found.stats["proposals"] += 1
         if limits.progress is not None:
-            limits.progress(Progress(found.stats["proposals"], f"{found.stats['constraints']} constraints learnt"))
+            limits.progress(
+                Progress(found.stats["proposals"], f"{counted(found.stats['constraints'], 'constraint')} learnt")
+            )
         learnt = _learn(model, proposal, satisfies, violates, limits)
         found.stats["constraints"] += learnt
         if not learnt:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
+from robustness.spelled import Spelling
 
 __all__ = ["Action", "Actions", "CostLike", "actions_for"]
 
@@ -153,7 +154,8 @@ def _ends(graph: Digraph, link: Any, one_way: bool) -> tuple[int, int]:
 
 
 def _name(graph: Digraph, ends: tuple[int, int]) -> str:
-    return f"{graph.labels[ends[0]]!r} - {graph.labels[ends[1]]!r}"
+    spelled = Spelling(graph.labels)
+    return f"{spelled(graph.labels[ends[0]])} -- {spelled(graph.labels[ends[1]])}"
 
 
 def _price(graph: Digraph, ends: tuple[int, int], cost: CostLike) -> Fraction:

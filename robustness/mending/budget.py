@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph, GraphLike, as_digraph
@@ -13,14 +13,18 @@ from robustness.limits import Limits, Progress
 from robustness.mending.front import mend
 from robustness.mending.goal import Goal
 from robustness.mending.results import MendResult, MendVerdict
+from robustness.showing import Shown
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 __all__ = ["BudgetResult", "best_within"]
 
 _REACHED = (MendVerdict.OPTIMAL, MendVerdict.FEASIBLE)
 
 
-@dataclass(frozen=True, slots=True)
-class BudgetResult:
+@dataclass(frozen=True, slots=True, repr=False)
+class BudgetResult(Shown):
     """What a budget buys.
 
     Attributes
@@ -48,6 +52,31 @@ class BudgetResult:
         if self.is_exact:
             return f"the budget buys {bought}; it does not buy {self.missed.goal}"
         return f"the budget buys {bought}; whether it buys {self.missed.goal} was not decided within the limit"
+
+    def pictured(self) -> GraphLike | None:
+        """Return the mended network, where the budget buys one."""
+        return None if self.best is None else self.best.graph
+
+    def plot(
+        self,
+        G: GraphLike | None = None,
+        *,
+        pos: Mapping[Hashable, Sequence[float]] | None = None,
+        ax: Axes | None = None,
+    ) -> Axes:
+        """Draw the best network with the links that were bought, as :meth:`MendResult.plot` does."""
+        if self.best is None:
+            raise InvalidParameter("the budget buys nothing, so there is no mended network to draw")
+        return self.best.plot(G, pos=pos, ax=ax)
+
+    def evidence(self) -> list[tuple[str, str]]:
+        """Return the links that are bought and the bound, as rows of a name and a text."""
+        return [] if self.best is None else self.best.evidence()
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the answer as JSON-ready values."""
+        best, missed = (None if found is None else found.as_dict() for found in (self.best, self.missed))
+        return {"best": best, "missed": missed, "is_exact": self.is_exact}
 
 
 def best_within(

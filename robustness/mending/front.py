@@ -179,7 +179,7 @@ def thin(
             ),
             key=natural_key,
         )
-        return replace(result, before=graph, dropped=tuple(dropped))
+        return replace(result, before=graph, dropped=tuple(dropped), thinned=True)
 
     def tell(result: MendResult) -> None:
         if on_improvement is not None:

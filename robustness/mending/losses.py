@@ -34,6 +34,7 @@ from robustness.mending.oracle import violates
 from robustness.natural_order import natural_key
 from robustness.showing import Shown
 from robustness.solver_calls import solve_within
+from robustness.spelled import Spelling, counted, plural
 from robustness.traps.question import Sets
 
 __all__ = ["Margin", "margin"]
@@ -76,12 +77,20 @@ class Margin(Shown):
             return (
                 f"no loss destroys it: {self.goal}"
                 if self.is_exact
-                else f"at least {self.lower_bound} losses destroy it"
+                else f"fewer than {counted(self.lower_bound, 'loss', 'losses')} do not destroy it: {self.goal}"
             )
-        plural = "s" * (self.losses != 1)
+        lost, destroy = counted(self.losses, kind), plural(self.losses, "destroys", "destroy")
         if self.is_exact:
-            return f"{self.losses} {kind}{plural} lost, and no fewer, destroy{'s' * (self.losses == 1)} it: {self.goal}"
-        return f"{self.losses} {kind}{plural} lost destroy it, fewer than {self.lower_bound} do not: {self.goal}"
+            return f"{lost} lost, and no fewer, {destroy} it: {self.goal}"
+        return f"{lost} lost {destroy} it, fewer than {self.lower_bound} do not: {self.goal}"
+
+    def evidence(self) -> list[tuple[str, str]]:
+        """Return what is lost, as rows of a name and a text."""
+        spelled = Spelling(self.graph.labels)
+        arrow = "->" if self.graph.directed else "--"
+        links = ", ".join(f"{spelled(u)} {arrow} {spelled(v)}" for u, v in self.links)
+        rows = (("lost links", links), ("lost nodes", ", ".join(map(spelled, self.nodes))))
+        return [(name, text) for name, text in rows if text]
 
     def as_dict(self) -> dict[str, Any]:
         """Return the margin as JSON-ready values."""

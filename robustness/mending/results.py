@@ -13,6 +13,7 @@ from robustness.mending.actions import Actions
 from robustness.mending.goal import Goal, Part
 from robustness.natural_order import natural_key
 from robustness.showing import Shown
+from robustness.spelled import Spelling, counted
 from robustness.traps.question import Sets
 
 __all__ = ["Demand", "MendResult", "MendVerdict", "Problem"]
@@ -87,6 +88,8 @@ class MendResult(Shown):
         The links to add (of :func:`robustness.thin`: to keep), in natural order; with ``one_way`` an arc each.
     dropped : tuple of pairs of labels
         Of :func:`robustness.thin`: the links that can go.
+    thinned : bool
+        Whether this answers :func:`robustness.thin`.
     cost : int or float or None
         What ``links`` cost together; None without any.
     lower_bound : int or float
@@ -118,6 +121,7 @@ class MendResult(Shown):
     dropped: tuple[Link, ...] = ()
     demands: tuple[Demand, ...] = field(default=(), repr=False)
     witness: Demand | None = None
+    thinned: bool = False
     one_way: bool = False
     reason: str = ""
     seconds: float = field(default=0.0, compare=False)
@@ -143,9 +147,10 @@ class MendResult(Shown):
             return f"impossible: no choice of these links reaches the goal, {self.goal}"
         if self.verdict is MendVerdict.UNDECIDED:
             return f"undecided: no links that reach the goal, {self.goal}; they cost at least {self.lower_bound}"
-        what = f"{len(self.links)} link{'s' * (len(self.links) != 1)}, cost {self.cost}"
-        if self.dropped:
-            what = f"{len(self.dropped)} link{'s' * (len(self.dropped) != 1)} can go, {what} stay"
+        what = f"{counted(len(self.links), 'link')}, cost {self.cost}"
+        if self.thinned:
+            stay = counted(len(self.links), "link stays", "links stay")
+            what = f"{counted(len(self.dropped), 'link')} can go, {stay} at cost {self.cost}"
         if self.verdict is MendVerdict.OPTIMAL and not (self.links or self.dropped):
             return f"optimal: the network reaches the goal, {self.goal}, as it is; no link is needed"
         if self.verdict is MendVerdict.OPTIMAL:
@@ -154,10 +159,18 @@ class MendResult(Shown):
 
     def evidence(self) -> list[tuple[str, str]]:
         """Return the links and the bound, as rows of a name and a text."""
-        links = ", ".join(f"{u!r} - {v!r}" for u, v in self.links)
+        spelled = Spelling(self.before.labels)
+        arrow = "->" if self.one_way else "--"
+        links = ", ".join(f"{spelled(u)} {arrow} {spelled(v)}" for u, v in self.links)
         covers = len(self.problem.covers) if self.problem is not None else 0
-        behind = f"{len(self.demands)} violations" + (f" and {covers} covers" if covers else "")
-        return [("links", links), ("lower bound", f"{self.lower_bound}, from {behind}")]
+        behind = counted(len(self.demands), "violation") + (f" and {counted(covers, 'cover')}" if covers else "")
+        gone = ", ".join(f"{spelled(u)} {arrow} {spelled(v)}" for u, v in self.dropped)
+        dropped = [("links that can go", gone)] if gone else []
+        return [
+            *dropped,
+            ("links that stay" if self.thinned else "links", links or "none"),
+            ("lower bound", f"{self.lower_bound}, from {behind}"),
+        ]
 
     def as_dict(self) -> dict[str, Any]:
         """Return the answer as JSON-ready values."""

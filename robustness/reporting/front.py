@@ -15,15 +15,17 @@ from robustness.files.writing import replace_file
 from robustness.mending import MendResult
 from robustness.reporting import page
 from robustness.reporting.section import section_of
+from robustness.spelled import counted
 from robustness.surveying import Gate, Row, Survey, survey
 from robustness.surveying.mended import mended_for, seconds_for_mending
 from robustness.surveying.row import Findings
+from robustness.told import Told
 
 __all__ = ["Kept", "Report", "report", "report_of", "require_drawing"]
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Report:
+class Report(Told):
     """A page about many networks.
 
     Attributes
@@ -45,12 +47,13 @@ class Report:
         """Return what the page shows as rows, as JSON-ready values."""
         return self.survey.as_dict()
 
-    def __str__(self) -> str:
-        return str(self.survey)
+    def summary(self) -> str:
+        """Return the rows of the page as a table in text."""
+        return self.survey.summary()
 
     def __repr__(self) -> str:
-        count = len(self.survey)
-        return f"<Report: {count} network{'s' * (count != 1)}, {self.survey.worst}, {len(self.html):,} characters>"
+        networks = counted(len(self.survey), "network")
+        return f"<Report: {networks}, {self.survey.worst}, {len(self.html):,} characters>"
 
     def _repr_html_(self) -> str:
         return self.survey._repr_html_()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from robustness.mending import Goal, MendResult, MendVerdict
 from robustness.reporting.wording import in_models
-from robustness.showing import labels_in_words
+from robustness.spelled import Spelling, counted
 
 __all__ = ["in_sentences"]
 
@@ -15,21 +15,22 @@ def in_sentences(found: MendResult) -> list[str]:
     if found.verdict is MendVerdict.IMPOSSIBLE:
         return [f"No further links between these nodes give a network that {wish}."]
     if found.cost is None:
-        least = f"{found.lower_bound} more link{' is' if found.lower_bound == 1 else 's are'} needed"
+        least = f"{counted(found.lower_bound, 'more link is', 'more links are')} needed"
         return [f"At least {least} for a network that {wish}; none were found in time."]
-    told = f"With {count} more link{'' if count == 1 else 's'} it {wish}"
+    told = f"With {counted(count, 'more link')} it {wish}"
     if found.verdict is MendVerdict.OPTIMAL:
         told += ". Fewer do not suffice: this is proven."
     else:
         told += ". " + _at_least(found.lower_bound)
+    spelled = Spelling(found.before.labels)
     arrow = "\N{RIGHTWARDS ARROW}" if found.one_way else "\N{EN DASH}"
-    return [told, ", ".join(f"{_name(u)} {arrow} {_name(v)}" for u, v in found.links)]
+    return [told, ", ".join(f"{spelled(u)} {arrow} {spelled(v)}" for u, v in found.links)]
 
 
 def _at_least(count: float) -> str:
     if count <= 0:
         return "How few would do was not proven in time."
-    return f"At least {count} {'is' if count == 1 else 'are'} needed; more was not proven in time."
+    return f"At least {counted(count, 'is', 'are')} needed; more was not proven in time."
 
 
 def _wish(goals: tuple[Goal, ...]) -> str:
@@ -38,9 +39,5 @@ def _wish(goals: tuple[Goal, ...]) -> str:
     if survived:
         f = survived[0].survive
         under = in_models([goal.model for goal in survived])
-        wishes.append(f"survives {f} malicious node{'' if f == 1 else 's'} under {under}")
+        wishes.append(f"survives {counted(f or 0, 'malicious node')} under {under}")
     return " and ".join(wishes)
-
-
-def _name(label: object) -> str:
-    return labels_in_words([label])[1:-1]

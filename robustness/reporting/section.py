@@ -18,6 +18,7 @@ from robustness.mending import MendResult
 from robustness.natural_order import in_natural_order
 from robustness.reporting.proposal import in_sentences
 from robustness.simulation.attacks import Attack
+from robustness.spelled import counted
 from robustness.surveying.row import Findings
 from robustness.threat_models import ToleranceTable
 from robustness.threat_models.results import number, sentences_of
@@ -156,7 +157,7 @@ def _played(attack: Attack, model: str) -> Film:
         for label in in_natural_order(by_label)
     )
     count = len(attack.malicious)
-    liars = f"with {count} malicious node{'s' * (count != 1)}" if count else "without a single malicious node"
+    liars = f"with {counted(count, 'malicious node')}" if count else "without a single malicious node"
     return Film(attack.story(), f"f = {attack.f} under the model {model}, {liars}", lines)
 
 

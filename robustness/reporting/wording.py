@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
+from robustness.spelled import counted, plural
 from robustness.surveying import Gate, Row, Survey
 from robustness.threat_models import THREAT_MODELS
 
@@ -18,11 +19,11 @@ def headline(survey: Survey, gate: Gate) -> str:
         return "No network was asked about."
     if gate.r is None and gate.survive is None:
         return _without_gate(survey, total)
-    counted = Counter(row.gate for row in survey.rows)
-    counted["missing"] = len(survey.missing)
+    standing = Counter(row.gate for row in survey.rows)
+    standing["missing"] = len(survey.missing)
     if total == 1:
-        return _about_one(next(name for name, count in counted.items() if count), gate, survey.models)
-    passed = counted["passed"]
+        return _about_one(next(name for name, count in standing.items() if count), gate, survey.models)
+    passed = standing["passed"]
     wanted = _wish(gate, survey.models, "is" if passed == 1 else "are")
     if passed == total:
         return f"{'Both' if total == 2 else f'All {total}'} networks {wanted}."
@@ -35,8 +36,8 @@ def headline(survey: Survey, gate: Gate) -> str:
         "missing": ("was not reached: nothing is claimed about it", "were not reached: nothing is claimed about them"),
         "error": ("could not be read", "could not be read"),
     }
-    rest = "; ".join(f"{counted[name]} {tail[counted[name] != 1]}" for name, tail in tails.items() if counted[name])
-    return f"{passed or 'None'} of {total} networks {wanted}; {rest}."
+    rest = "; ".join(f"{standing[name]} {tail[standing[name] != 1]}" for name, tail in tails.items() if standing[name])
+    return f"{passed or 'None'} of {counted(total, 'network')} {wanted}; {rest}."
 
 
 def _about_one(standing: str, gate: Gate, models: Sequence[str]) -> str:
@@ -57,7 +58,9 @@ def _wish(gate: Gate, models: Sequence[str], be: str) -> str:
     if gate.r is not None:
         wishes.append(f"{be} ({gate.r},{gate.s})-robust")
     if gate.survive is not None:
-        wishes.append(f"survive{'s' if be == 'is' else ''} {_nodes(gate.survive)} under {in_models(models)}")
+        wishes.append(
+            f"survive{'s' if be == 'is' else ''} {counted(gate.survive, 'malicious node')} under {in_models(models)}"
+        )
     return " and ".join(wishes)
 
 
@@ -77,12 +80,15 @@ def _without_gate(survey: Survey, total: int) -> str:
     read = [row for row in survey.rows if not row.error]
     rest = "" if len(read) == total else f" {total - len(read)} could not be read or were not reached."
     if not survey.models:
-        told = "1 network was" if len(read) == 1 else f"{len(read)} networks were"
+        told = counted(len(read), "network was", "networks were")
         return f"{told} looked at; nothing was required of {'it' if len(read) == 1 else 'them'}.{rest}"
     survivors = sum(min(row.guaranteed.values()) >= 1 for row in read)
-    verb = "survives" if survivors == 1 else "survive"
+    if total == 1 and len(read) == 1:
+        survives = "survives" if survivors else "does not survive"
+        return f"The network {survives} 1 malicious node under {in_models(survey.models)}. Nothing was required of it."
+    survive = plural(survivors, "survives", "survive")
     return (
-        f"{survivors or 'None'} of {len(read)} network{'s' * (len(read) != 1)} {verb} 1 malicious node under "
+        f"{survivors or 'None'} of {counted(len(read), 'network')} {survive} 1 malicious node under "
         f"{in_models(survey.models)}. Nothing was required of {'it' if len(read) == 1 else 'them'}.{rest}"
     )
 
@@ -92,8 +98,8 @@ def in_words(row: Row, models: Sequence[str]) -> str:
     if row.error:
         return f"It could not be read: {reason(row)}"
     kind = "directed " if row.directed else ""
-    links = f"{row.arcs} arcs" if row.directed else f"{(row.arcs or 0) // 2} links"
-    sentences = [f"A {kind}network of {row.nodes} nodes and {links}.", _robustness(row)]
+    links = counted(row.arcs or 0, "arc") if row.directed else counted((row.arcs or 0) // 2, "link")
+    sentences = [f"A {kind}network of {counted(row.nodes or 0, 'node')} and {links}.", _robustness(row)]
     sentences.append(_tolerance(row, models))
     if row.gate:
         sentences.append(
@@ -121,7 +127,11 @@ def _tolerance(row: Row, models: Sequence[str]) -> str:
     is_decided = all(row.refuted.get(model) == f + 1 for model, f in guaranteed.items())
     if high < 0:
         return "It does not even agree when nobody lies." if is_decided else "That it agrees at all was not proven."
-    promised = _nodes(low) if low == high else f"{max(low, 0)} to {high} malicious nodes, depending on the model"
+    promised = (
+        counted(low, "malicious node")
+        if low == high
+        else f"{max(low, 0)} to {counted(high, 'malicious node')}, depending on the model"
+    )
     if is_decided:
         return f"It survives {promised}." if high else "It survives no malicious node."
     return f"It survives at least {promised}; how many more is not known."
@@ -132,7 +142,3 @@ def _robustness(row: Row) -> str:
         return f"Its greatest r is between {row.r} and {row.r_at_most}: a limit came before the rest."
     s = f"{row.s}" if row.s == row.s_at_most else f"between {row.s} and {row.s_at_most}"
     return f"The greatest r for which it is r-robust is {row.r}; the greatest s with it is {s}."
-
-
-def _nodes(f: int) -> str:
-    return f"{f} malicious node" + "s" * (f != 1)

@@ -16,6 +16,7 @@ from robustness.limits import Limits, Progress
 from robustness.results import Verdict
 from robustness.sampling.chance import chance_of_error, greatest_claim, least_needed
 from robustness.sampling.results import SampleResult, SampleVerdict
+from robustness.spelled import counted
 from robustness.whole_numbers import taking_numpy_integers
 
 __all__ = ["sample_robustness"]
@@ -79,7 +80,7 @@ def sample_robustness(
     graph = as_digraph(G)
     level = _level(error)
     if graph.n < 2:
-        raise InvalidParameter(f"a network of {graph.n} node(s) has no samples: check decides it")
+        raise InvalidParameter(f"a network of {counted(graph.n, 'node')} has no samples: check decides it")
     if r is not None and r < 1:
         raise InvalidParameter(f"r is at least 1, not {r}: every network is 0-robust")
     if nodes < 2 or repeats < 1:
@@ -111,7 +112,9 @@ class _Test:
         n = self.graph.n
         needed = None if r is None else least_needed(n, self.least_degree, r, self.nodes, self.repeats, self.level)
         if r is not None and needed is None:
-            return self._undecided(r, 0, f"samples of {self.nodes} nodes cannot speak for r = {r}: take more", started)
+            return self._undecided(
+                r, 0, f"samples of {counted(self.nodes, 'node')} cannot speak for r = {r}: take more", started
+            )
         q, reason = self._least_of_samples(needed)
         if needed is not None and r is not None:
             if q < needed:

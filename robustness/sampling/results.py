@@ -6,6 +6,9 @@ import enum
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
+from robustness.spelled import counted
+from robustness.told import Told
+
 __all__ = ["SampleResult", "SampleVerdict"]
 
 
@@ -18,8 +21,8 @@ class SampleVerdict(enum.Enum):
     UNDECIDED = "undecided"
 
 
-@dataclass(frozen=True, slots=True)
-class SampleResult:
+@dataclass(frozen=True, slots=True, repr=False)
+class SampleResult(Told):
     """What samples of a network say.
 
     Attributes
@@ -59,7 +62,27 @@ class SampleResult:
         if self.verdict is SampleVerdict.UNDECIDED:
             return f"undecided: {self.reason} (samples prove nothing in any case)"
         return (
-            f"likely {self.r}-robust, not a proof: {self.repeats} random samples of {self.nodes} nodes are all "
+            f"likely {self.r}-robust, not a proof: {counted(self.repeats, 'random sample')} of "
+            f"{counted(self.nodes, 'node')} {'is' if self.repeats == 1 else 'are all'} "
             f"{self.q}-robust; of a network that is not {self.r}-robust they are with probability {self.chance:.2g} "
             f"at most"
         )
+
+    def evidence(self) -> list[tuple[str, str]]:
+        """Return how the samples were drawn, as rows of a name and a text."""
+        return [("samples", f"{self.repeats} of {counted(self.nodes, 'node')}"), ("seed", f"{self.seed}")]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return what a test says as JSON-ready values, without the key ``verdict``, which is for what is proven."""
+        return {
+            "sample_verdict": self.verdict.value,
+            "is_proof": False,
+            "r": self.r,
+            "chance_of_error": self.chance,
+            "nodes": self.nodes,
+            "repeats": self.repeats,
+            "q": self.q,
+            "seed": self.seed,
+            "reason": self.reason,
+            "seconds": round(self.seconds, 6),
+        }

@@ -13,6 +13,7 @@ checks it with ``==``.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Hashable, Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -25,7 +26,7 @@ from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.json_labels import from_json
 from robustness.natural_order import in_natural_order
-from robustness.showing import Shown, labels_in_words
+from robustness.showing import Shown
 from robustness.simulation.adversaries import Adversary, Alternating, Constant
 from robustness.simulation.fault_models import fault_model_named, require_fault_model
 from robustness.simulation.outcome import Outcome
@@ -33,6 +34,7 @@ from robustness.simulation.run import simulate
 from robustness.simulation.scenario import Scenario, Start
 from robustness.simulation.schedules import AdversarialDelays, EveryStep, Schedule
 from robustness.simulation.topology import Topology
+from robustness.spelled import Spelling, counted, labels_in_words
 
 __all__ = ["Attack", "attack_from_trap", "attack_from_violation"]
 
@@ -121,15 +123,16 @@ class Attack(Shown):
     def evidence(self) -> list[tuple[str, str]]:
         """Return the sets, as rows of a name and a text."""
         sets = (("malicious", self.malicious), ("S1", self.S1), ("S2", self.S2))
-        return [(name, labels_in_words(labels)) for name, labels in sets]
+        return [(name, labels_in_words(labels, self.graph.labels)) for name, labels in sets]
 
     def story(self) -> str:
         """Return the attack in words."""
-        groups = f"S1 = {labels_in_words(self.S1)} at {_LOW:g}, S2 = {labels_in_words(self.S2)} at {_HIGH:g}"
+        low, high = (labels_in_words(side, self.graph.labels) for side in (self.S1, self.S2))
+        groups = f"S1 = {low} at {_LOW:g}, S2 = {high} at {_HIGH:g}"
         scene = f"{groups}, all others at {_BETWEEN:g}"
         if not self.malicious:
             return f"{scene}; nobody need be malicious"
-        who = labels_in_words(self.malicious)
+        who = ", ".join(map(Spelling(self.graph.labels), in_natural_order(self.malicious)))
         if self.kind == "violation":
             return f"{scene}; {who} malicious, holding the start for ever"
         means = "by delays of 0 or 1 step" if self.delayed else "by telling each so"
@@ -175,12 +178,17 @@ class Attack(Shown):
         else:
             trap = (sets["malicious"], sets["S1"], sets["S2"])
             made = attack_from_trap(network, document["f"], *trap, document["model"])
-        if json.loads(json.dumps(made.as_dict())) != json.loads(json.dumps(document)):
+        if _bare(made.as_dict()) != _bare(document):
             raise InvalidParameter("an attack file says what its evidence yields, but this one was changed")
         return made
 
     def _ordered(self, labels: Iterable[Label]) -> tuple[Label, ...]:
         return tuple(in_natural_order(self.graph.labels_of(self.graph.ids(labels))))
+
+
+def _bare(document: dict[str, Any]) -> Any:
+    """Return a document after JSON, its story without the quotes and braces that older versions wrote round labels."""
+    return json.loads(json.dumps({**document, "story": re.sub(r"[{}'\"]", "", str(document["story"]))}))
 
 
 def attack_from_violation(
@@ -236,7 +244,7 @@ def attack_from_violation(
     if first & second or not first - bad or not second - bad or not reachable <= bad <= first | second:
         raise InvalidParameter(
             "the malicious nodes of a violation lie in its two disjoint sets, leave a normal node in each, and are all "
-            f"those with more than f = {f} in-neighbours outside their set: name others"
+            f"those with more than f = {counted(f, 'in-neighbour')} outside their set: name others"
         )
     M, S1, S2 = (graph.labels_of(ids) for ids in (bad, first, second))
     return Attack("violation", graph, f, model, M, S1, S2, delayed=False)

@@ -31,6 +31,7 @@ from robustness.simulation.schedules import Past
 from robustness.simulation.sensing import board_for
 from robustness.simulation.topology import Topology, extended_by
 from robustness.simulation.update_rules import rule_named
+from robustness.spelled import counted
 
 __all__ = ["Batch"]
 
@@ -219,7 +220,7 @@ def _advance(step: int, tau: int, law: Law, hearing: Hearing, stores: Stores, st
 
 def _states(rows: list[tuple[float, ...]], shape: tuple[int, int], what: str) -> Floats:
     if any(len(row) != shape[1] for row in rows):
-        raise InvalidParameter(f"a start has one {what} for each of the {shape[1]} nodes, in id order")
+        raise InvalidParameter(f"a start has one {what} for each of the {counted(shape[1], 'node')}, in id order")
     values = np.array(rows, dtype=np.float64).reshape(shape)
     if not (np.abs(values) <= LARGEST_START).all():
         raise InvalidParameter(f"a start has finite numbers of at most {LARGEST_START:g}: some {what} is not")

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
+from robustness.spelled import counted
 
 __all__ = ["FAULT_MODELS", "FaultModel", "fault_model_named", "require_fault_model"]
 
@@ -69,7 +70,9 @@ def require_fault_model(graph: Digraph, malicious: npt.NDArray[np.bool_], f: int
     if not model.local:
         counts = malicious.sum(axis=1)
         if counts.size and counts.max() > f:
-            raise InvalidParameter(f"f-total: at most f = {f} nodes are malicious, not {counts.max()}: name fewer")
+            raise InvalidParameter(
+                f"f-total: at most f = {counted(f, 'node is', 'nodes are')} malicious, not {counts.max()}: name fewer"
+            )
         return
     for i in range(graph.n):
         heard = malicious[:, graph.in_neighbours(i)].sum(axis=1)

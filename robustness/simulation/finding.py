@@ -19,6 +19,7 @@ from robustness.limits import Limits, Progress
 from robustness.results import Verdict
 from robustness.simulation.attacks import Attack, attack_from_trap, attack_from_violation
 from robustness.simulation.gains import arc_weights, kept_weight_bound
+from robustness.spelled import counted
 from robustness.traps.ladder import decide_trap
 from robustness.traps.question import Question
 
@@ -157,7 +158,11 @@ def _find_violation(graph: Digraph, f: int, limits: Limits, algorithm: str) -> F
     if result.verdict is Verdict.UNDECIDED:
         return Finding(None, "undecided", f"({f + 1},{f + 1})-robustness was not decided: raise the time limit")
     if result.witness is None:
-        return Finding(None, "agreement", f"({f + 1},{f + 1})-robust: f = {f} malicious nodes do not split it")
+        return Finding(
+            None,
+            "agreement",
+            f"({f + 1},{f + 1})-robust: {counted(f, 'malicious node does', 'malicious nodes do')} not split it",
+        )
     attack = attack_from_violation(graph, f, result.witness)
     return Finding(attack, "split", f"not ({f + 1},{f + 1})-robust: {attack.story()}")
 
@@ -168,10 +173,18 @@ def _find_by_search(graph: Digraph, f: int, model: str, limits: Limits, algorith
     # (2f+1)-robust graphs have no attack of these kinds, which spares the search; that check gets half of the time.
     strong = check_within(graph, 2 * f + 1, 1, limits.share(1 / 2), algorithm)
     if strong.verdict is Verdict.ROBUST:
-        return Finding(None, "agreement", f"{2 * f + 1}-robust: f = {f} nodes do not split it, two-faced or not")
+        return Finding(
+            None,
+            "agreement",
+            f"{2 * f + 1}-robust: {counted(f, 'node does', 'nodes do')} not split it, two-faced or not",
+        )
     found = decide_trap(graph, Question(f, faces == 2, local), limits)
     if found.exists is None:
-        return Finding(None, "undecided", f"whether f = {f} nodes split it was not decided: raise the time limit")
+        return Finding(
+            None,
+            "undecided",
+            f"whether {counted(f, 'node splits', 'nodes split')} it was not decided: raise the time limit",
+        )
     if found.sets is not None:
         M, S1, S2 = (graph.labels_of(ids) for ids in found.sets)
         if faces == 1:
@@ -179,6 +192,6 @@ def _find_by_search(graph: Digraph, f: int, model: str, limits: Limits, algorith
         else:
             attack = attack_from_trap(graph, f, M, S1, S2, model=faults)
         return Finding(attack, "split", f"{'trapped' if faces == 2 else 'held apart'}: {attack.story()}")
-    bound = "f-local set of nodes" if local else f"{f} nodes"
+    bound = "f-local set of nodes" if local else counted(f, "node")
     known = f"{f + 1}-robust without any {bound}" if faces == 2 else "no local violation"
-    return Finding(None, "agreement", f"{known}: f = {f} do not split it")
+    return Finding(None, "agreement", f"{known}: {counted(f, 'does', 'do')} not split it")

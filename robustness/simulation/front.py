@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -119,8 +120,9 @@ def simulate(
     """
     unknown = sorted(set(options) - _OPTIONS)
     if unknown:
+        known = _OPTIONS | {name for name in inspect.signature(simulate).parameters if name not in ("G", "options")}
         raise TypeError(
-            f"simulate() got an unexpected keyword argument {unknown[0]!r}: there are {', '.join(sorted(_OPTIONS))}"
+            f"simulate() got an unexpected keyword argument {unknown[0]!r}: there are {', '.join(sorted(known))}"
         )
     if tau is not None and isinstance(schedule, Schedule):
         raise InvalidParameter("tau belongs to a schedule by name: a Schedule has its own")

@@ -7,6 +7,7 @@ import numpy as np
 from robustness.errors import InvalidParameter
 from robustness.simulation.adversaries.protocol import Move, Setting
 from robustness.simulation.dynamics import Floats
+from robustness.spelled import counted
 
 __all__ = ["require_lawful"]
 
@@ -30,9 +31,8 @@ def require_lawful(move: Move, setting: Setting) -> None:
         if not setting.chooses_delays and (move.delays >= 0).any():
             raise InvalidParameter("this schedule sets the delays itself: give the adversary adversarial delays")
         if move.delays.max(initial=0) > setting.longest_delay:
-            raise InvalidParameter(
-                f"delays are at most {setting.longest_delay} steps, but the adversary chose {move.delays.max()}"
-            )
+            longest = counted(setting.longest_delay, "step")
+            raise InvalidParameter(f"delays are at most {longest}, but the adversary chose {move.delays.max()}")
 
 
 def _require_lawful_claims(told: Floats, setting: Setting) -> None:

@@ -14,9 +14,10 @@ from certificates.graph import Label
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter, MissingExtra
 from robustness.natural_order import in_natural_order
-from robustness.showing import ShownOverTime, labels_in_words
+from robustness.showing import ShownOverTime
 from robustness.simulation.contraction import Contraction
 from robustness.simulation.dynamics import Floats, to_absolute
+from robustness.spelled import counted, labels_in_words
 
 if TYPE_CHECKING:
     from robustness.simulation.scenario import Scenario, Start
@@ -161,8 +162,10 @@ class Outcome(ShownOverTime):
 
     def summary(self) -> str:
         """Return the verdict and where the vehicles are, in one line."""
-        where = "; ".join(f"{labels_in_words(labels)} at {value:.6g}" for value, labels in self.groups[:6])
-        more = f"; {len(self.groups) - 6} more groups" if len(self.groups) > 6 else ""
+        graph = self.pictured()
+        nodes = None if graph is None else graph.labels
+        where = "; ".join(f"{labels_in_words(labels, nodes)} at {value:.6g}" for value, labels in self.groups[:6])
+        more = f"; {counted(len(self.groups) - 6, 'more group')}" if len(self.groups) > 6 else ""
         exactly = ", exactly" if self.exact else ""
         at = "" if self.diverged_at is None else f" at step {self.diverged_at}"
         return f"{self.verdict.value}{exactly}{at}: {where}{more}"
@@ -173,7 +176,24 @@ class Outcome(ShownOverTime):
 
     def evidence(self) -> list[tuple[str, str]]:
         """Return the numbers, as rows of a name and a text."""
-        return [(name, str(value)) for name, value in self.as_dict().items() if name not in ("outcome", "groups")]
+        rows = [
+            ("spread", f"{self.initial_spread:g} at first, {self.spread:g} at the end"),
+            ("greatest speed at the end", f"{self.speed:g}"),
+        ]
+        if self.since is not None:
+            rows.append(("within the tolerance since", f"step {self.since}"))
+        if self.rate is not None:
+            rows.append(("spread shrinks each step by the factor", f"{self.rate:.4g}, fitted"))
+        if self.contraction is not None:
+            least, every = self.contraction
+            rows.append(
+                ("proven", f"without a trap it loses at least {least:.2g} of itself in {counted(every, 'step')}")
+            )
+        if self.safe is not None:
+            rows.append(("left the hull of the start", "no normal node" if self.safe else "a normal node"))
+        if self.promise_gap is not None:
+            rows.append(("gains", self.promise_gap))
+        return rows
 
     def as_dict(self) -> dict[str, Any]:
         """Return the outcome as JSON-ready values (without the trajectory)."""

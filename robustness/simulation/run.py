@@ -14,6 +14,7 @@ from robustness.simulation.gains import Fleet, PromiseWarning
 from robustness.simulation.observer import Observer
 from robustness.simulation.outcome import Outcome
 from robustness.simulation.scenario import Scenario, Start
+from robustness.spelled import counted
 
 __all__ = ["simulate"]
 
@@ -93,7 +94,8 @@ def simulate(
         observer = Observer(batch.setting, batch.fleet, scenario, starts, gaps, record=record)
     except MemoryError:
         raise InvalidParameter(
-            f"{scenario.steps} steps of {len(starts)} runs with delays up to {scenario.schedule.delay_rule.bound} do "
+            f"{counted(scenario.steps, 'step')} of {counted(len(starts), 'run')} with delays "
+            f"up to {scenario.schedule.delay_rule.bound} do "
             "not fit into memory: run fewer at once"
         ) from None
 

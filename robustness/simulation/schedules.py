@@ -22,6 +22,7 @@ from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
 from robustness.simulation.adversaries.protocol import View
 from robustness.simulation.dynamics import Floats
+from robustness.spelled import counted
 
 __all__ = [
     "SCHEDULES",
@@ -354,8 +355,9 @@ class Schedule:
         needed = self.update_times.gap - 1 + self.delay_rule.bound
         if self.tau is not None and needed > self.tau:
             raise InvalidParameter(
-                f"values in use are at most tau = {self.tau} steps old, but updates {self.update_times.gap} steps "
-                f"apart with delays up to {self.delay_rule.bound} make them {needed} old: raise tau to {needed}"
+                f"values in use are at most tau = {counted(self.tau, 'step')} old, but updates "
+                f"{counted(self.update_times.gap, 'step')} apart with delays "
+                f"up to {self.delay_rule.bound} make them {needed} old: raise tau to {needed}"
             )
 
     @property

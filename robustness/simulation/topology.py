@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidGraph, InvalidParameter
+from robustness.spelled import counted
 from robustness.time_varying import TimeVaryingGraph
 
 __all__ = ["Topology", "as_topology", "extended_by"]
@@ -91,7 +92,9 @@ def as_topology(network: GraphLike | Callable[[int], GraphLike], steps: int) -> 
         return Topology((as_digraph(network),))
     if isinstance(network, TimeVaryingGraph):
         if network.period is None and len(network) < steps:
-            raise InvalidParameter(f"a finite trace of {len(network)} steps has no step {steps - 1}: give it a period")
+            raise InvalidParameter(
+                f"a finite trace of {counted(len(network), 'step')} has no step {steps - 1}: give it a period"
+            )
         # What repeats from the first step on is kept as one turn; after a prefix, the steps are written out.
         length = len(network) if network.period == len(network) else max(steps, 1)
         stored = [network.stored_step(step) for step in range(length)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -76,7 +77,20 @@ def rule_named(rule: str | Rule | UpdateFunction) -> Rule:
         return RULES[rule]
     if callable(rule) and not isinstance(rule, type):
         name = getattr(rule, "__name__", type(rule).__name__)
+        _require_two_values(rule, name)
         return Rule(name, first_order=True, strict=True, synchronous=False, update=rule)
     raise InvalidParameter(
         f"an update rule is one of {', '.join(RULES)} or a function of (own value, heard values), not {rule!r}"
     )
+
+
+def _require_two_values(rule: UpdateFunction, name: str) -> None:
+    """Refuse a function that cannot be called with an own value and the values heard, before anything runs."""
+    try:
+        inspect.signature(rule).bind(0.0, ())
+    except TypeError:
+        raise InvalidParameter(
+            f"an update rule is called as {name}(own, heard), and this one takes other arguments: give it these two"
+        ) from None
+    except ValueError:  # a function that has no signature, as some built-in ones
+        return

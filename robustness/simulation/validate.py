@@ -35,6 +35,7 @@ from robustness.simulation.run import simulate
 from robustness.simulation.scenario import Scenario, Start, random_start
 from robustness.simulation.schedules import schedule_named
 from robustness.simulation.topology import Topology
+from robustness.spelled import counted
 
 __all__ = ["Counterexample", "Regime", "ValidationReport", "malicious_sets", "promised_regimes", "validate_certificate"]
 
@@ -274,13 +275,21 @@ def _play(
                 reason = f"{found.outcome.verdict.value} under {found.scenario.rule} and {found.scenario.adversary}"
                 return ValidationReport("counterexample", runs, exhaustive, found, reason)
             if time.monotonic() > deadline and done < len(tasks):
-                reason = f"the time limit came after {done} of {len(tasks)} batches"
+                reason = f"the time limit came after {done} of {counted(len(tasks), 'batch', 'batches')}"
                 return ValidationReport("undecided", runs, exhaustive, None, reason)
     except BrokenProcessPool:
         return ValidationReport("undecided", runs, exhaustive, None, "a worker was lost: nothing is claimed")
     if undecided:
-        return ValidationReport("undecided", runs, exhaustive, None, f"{undecided} runs were undecided at the horizon")
-    return ValidationReport("confirmed", runs, exhaustive, None, f"{runs} runs agreed, none left its safety interval")
+        return ValidationReport(
+            "undecided",
+            runs,
+            exhaustive,
+            None,
+            f"{counted(undecided, 'run was', 'runs were')} undecided at the horizon",
+        )
+    return ValidationReport(
+        "confirmed", runs, exhaustive, None, f"{counted(runs, 'run')} agreed, none left its safety interval"
+    )
 
 
 def _in_order(

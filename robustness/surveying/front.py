@@ -17,6 +17,7 @@ from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter, MissingExtra, RobustnessError
 from robustness.files import ReadingOptions
 from robustness.files.front import read_with
+from robustness.spelled import counted
 from robustness.surveying import tables
 from robustness.surveying.mended import seconds_for_mending, with_links
 from robustness.surveying.networks import expand, note_of_twice
@@ -24,13 +25,14 @@ from robustness.surveying.row import NOT_REACHED, STANDINGS, Findings, Gate, Que
 from robustness.surveying.state import Journal, key_of
 from robustness.threat_models import THREAT_MODELS
 from robustness.threat_models.models import threat_model_named
+from robustness.told import Told
 from robustness.whole_numbers import taking_numpy_integers
 
 __all__ = ["Survey", "survey"]
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Survey:
+class Survey(Told):
     """The rows of a survey, in the order of its networks.
 
     Attributes
@@ -96,11 +98,12 @@ class Survey:
         columns = list(tables.flat(Row(""), self.models))
         return pandas.DataFrame([tables.flat(row, self.models) for row in self.listed], columns=columns)
 
-    def __str__(self) -> str:
+    def summary(self) -> str:
+        """Return the rows as a table in text."""
         return tables.text(self.listed, self.models)
 
     def __repr__(self) -> str:
-        return f"<Survey: {len(self.rows)} network{'s' * (len(self.rows) != 1)}, {self.worst}>"
+        return f"<Survey: {counted(len(self.rows), 'network')}, {self.worst}>"
 
     def _repr_html_(self) -> str:
         head, *body = tables.cells(self.listed, self.models)

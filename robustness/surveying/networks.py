@@ -14,6 +14,7 @@ from robustness.files import FORMATS, names_of_graphs, topohub_names
 from robustness.files.front import format_suffix
 from robustness.files.text import one_line
 from robustness.natural_order import natural_key
+from robustness.spelled import counted
 
 __all__ = ["Sources", "expand", "note_of_twice"]
 
@@ -114,7 +115,9 @@ def _folder(folder: Path, notes: list[str]) -> Iterator[str]:
             else:
                 passed_over += 1
     if passed_over:
-        notes.append(f"{one_line(str(folder))}: {passed_over} file(s) passed over, whose suffix names no format")
+        notes.append(
+            f"{one_line(str(folder))}: {counted(passed_over, 'file')} passed over, whose suffix names no format"
+        )
     if not found:
         raise UnreadableTopology(f"{one_line(str(folder))}: holds no file of a known format ({', '.join(FORMATS)})")
     yield from sorted(found, key=natural_key)

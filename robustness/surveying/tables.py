@@ -12,7 +12,7 @@ from typing import Any
 from xml.etree import ElementTree as ET
 
 from robustness.printable import printable
-from robustness.showing import listed_in_words
+from robustness.spelled import Spelling, counted, listed_in_words
 from robustness.surveying.row import NOT_REACHED, Row
 
 __all__ = ["TABLES", "cells", "flat", "text"]
@@ -140,8 +140,11 @@ def _weakest_pair(row: Row) -> str:
     """Return the two sets that do not listen in words; empty where none is known."""
     if row.weakest is None or row.r_at_most is None:
         return ""
-    low, high = (listed_in_words(row.weakest[side], _MOST_NODES) for side in ("S1", "S2"))
-    return f"weakest pair: no node of S1 = {low} or S2 = {high} hears {row.r_at_most + 1} nodes outside its set"
+    spelled = Spelling(label for side in row.weakest.values() for label in side)
+    low, high = (listed_in_words(row.weakest[side], _MOST_NODES, spelled) for side in ("S1", "S2"))
+    return (
+        f"weakest pair: no node of S1 = {low} or S2 = {high} hears {counted(row.r_at_most + 1, 'node')} outside its set"
+    )
 
 
 def _xml(words: str) -> str:

@@ -12,6 +12,7 @@ from robustness.definitions import r_reachable_ids
 from robustness.digraph import Digraph
 from robustness.limits import Limits
 from robustness.results import RobustnessResult, Verdict
+from robustness.spelled import counted
 from robustness.traps.ladder import decide_trap
 from robustness.traps.question import Question, Sets, solves
 from robustness.traps.shortcuts import settle_trap
@@ -80,7 +81,7 @@ class Decisions:
         if not question.two_faces:
             kind = "there is no local violation" if question.local else f"the network is ({f + 1},{f + 1})-robust"
             return f"{kind} for f = {f}" if question.local else kind
-        removed = "any f-local set of nodes" if question.local else f"any {f} node{'s' * (f > 1)}"
+        removed = "any f-local set of nodes" if question.local else f"any {counted(f, 'node')}"
         trap = "local trap" if question.local else "trap"
         return f"without {removed} the network is still {f + 1}-robust: there is no {trap} for f = {f}"
 
@@ -124,7 +125,7 @@ class Decisions:
         limits = self.limits.share(share)
         answer = decide_trap(self.graph, question, limits, settle=self._settle)
         exists, sets, name, stats = answer.exists, answer.sets, answer.decided_by, answer.stats
-        how = str(stats.get("rule", "")) or f"complete search ({stats.get('nodes', 0)} nodes)"
+        how = str(stats.get("rule", "")) or f"complete search ({counted(stats.get('nodes', 0), 'node')})"
         if exists is None:
             how = str(stats.get("reason", "a limit was reached"))
         return Finding(exists, sets, how if name == "lemma" or exists is not True else "found by search")

@@ -9,6 +9,7 @@ from typing import Any, overload
 from robustness.digraph import GraphLike, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.limits import Limits, Progress
+from robustness.spelled import counted
 from robustness.threat_models.decisions import Decisions
 from robustness.threat_models.models import THREAT_MODELS, threat_model_named
 from robustness.threat_models.over_time import MODELS_OVER_TIME, JointDecisions, over_time
@@ -181,7 +182,7 @@ def _questions(
             raise InvalidParameter(f"{name} is an integer of at least 1, not {value!r}")
     if delay > tau:
         raise InvalidParameter(
-            f"with delays up to {delay} steps values are used for at least as long: raise tau to {delay}"
+            f"with delays up to {counted(delay, 'step')} values are used for at least as long: raise tau to {delay}"
         )
     names = MODELS_OVER_TIME if model is None else (over_time(model).name,)
     union = G.union(0, len(G))

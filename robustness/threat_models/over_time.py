@@ -20,6 +20,7 @@ from dataclasses import dataclass, field, replace
 from robustness.errors import InvalidParameter
 from robustness.limits import Limits
 from robustness.results import Verdict
+from robustness.spelled import counted
 from robustness.threat_models.decisions import Decisions, Finding
 from robustness.threat_models.models import SECOND_ORDER_GAINS, THREAT_MODELS, ThreatModel
 from robustness.threat_models.remembered import BEFORE_THE_PERIOD, Remembered, find_in_all
@@ -98,7 +99,8 @@ class JointDecisions(Decisions):
         trace = "" if self.sequence.period else " (a finite trace: nothing is said beyond its last step)"
         window = self._windows.get(2 * f + 1)
         if window is not None:
-            return f"the network is jointly {2 * f + 1}-robust over every {window} steps; windows {self._room}{trace}"
+            every = "step" if window == 1 else counted(window, "step")
+            return f"the network is jointly {2 * f + 1}-robust over every {every}; windows {self._room}{trace}"
         local = "f-local " if question.local else ""
         return f"no {local}triple M, S1, S2 for f = {f} holds what is remembered apart at every step ({self._ages})"
 
@@ -116,7 +118,7 @@ class JointDecisions(Decisions):
         limits = self.limits.share(share)
         twice = self._jointly(question.f, limits.share(0.3))
         if twice is Verdict.ROBUST:
-            return Finding(False, None, f"unions of {self._windows[2 * question.f + 1]} steps")
+            return Finding(False, None, f"unions of {counted(self._windows[2 * question.f + 1], 'step')}")
         self.union.limits = limits.share(0.4)
         found = self.union.attack(question)
         if found.exists:
@@ -141,12 +143,12 @@ class JointDecisions(Decisions):
 
     @property
     def _ages(self) -> str:
-        return f"tau = {self.tau}, delays up to {self.delay}, updates up to {self.gap} steps apart"
+        return f"tau = {self.tau}, delays up to {self.delay}, updates up to {counted(self.gap, 'step')} apart"
 
     @property
     def _room(self) -> str:
         """Why windows may be so long and no longer."""
-        return f"may have up to {max(self.longest_window, 0)} steps ({self._ages})"
+        return f"may have up to {counted(max(self.longest_window, 0), 'step')} ({self._ages})"
 
     def _jointly(self, f: int, limits: Limits) -> Verdict:
         """Return whether the sequence is jointly (2f+1)-robust with ``(l - 1) + (g - 1) + b <= tau``."""

@@ -29,6 +29,7 @@ from robustness.digraph import Digraph
 from robustness.errors import InternalError
 from robustness.limits import Limits
 from robustness.solver_calls import solve_within
+from robustness.spelled import counted
 from robustness.time_varying import TimeVaryingGraph
 from robustness.traps.question import Question, Sets, obeys_bound
 
@@ -88,7 +89,7 @@ def find_in_all(remembered: Remembered, question: Question, limits: Limits) -> t
     alone decides nothing (None), unless there is no step before.
     """
     if remembered.arcs > _MOST_ARCS:
-        return None, None, f"{remembered.arcs} arcs of all steps together are too many for the solver"
+        return None, None, f"{counted(remembered.arcs, 'arc')} of all steps together are too many for the solver"
     exists, sets = _solve(remembered, question, limits, with_before=False)
     if exists and remembered.before:
         exists, sets = _solve(remembered, question, limits, with_before=True)

@@ -11,6 +11,7 @@ from certificates.graph import Label
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
 from robustness.showing import Shown
+from robustness.spelled import counted
 from robustness.threat_models.models import THREAT_MODELS, ThreatModel
 from robustness.threat_models.parameters import Parameters
 
@@ -267,7 +268,7 @@ class ToleranceTable(Shown, Mapping[str, ToleranceResult]):
     def summary(self) -> str:
         """Return the table in one paragraph of plain words."""
         graph = self.graph
-        size = f"A network of {graph.n} {'node' if graph.n == 1 else 'nodes'} and {graph.arc_count} arcs."
+        size = f"A network of {counted(graph.n, 'node')} and {counted(graph.arc_count, 'arc')}."
         return " ".join([size, *sentences_of(self)])
 
     def evidence(self) -> list[tuple[str, str]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from robustness.spelled import counted
 from robustness.threat_models.decisions import Decisions, Finding, certain_attack
 from robustness.threat_models.models import ThreatModel
 from robustness.threat_models.results import AttackSets, Reason, Standing, ToleranceResult
@@ -116,4 +117,4 @@ class _Reasons:
 
 
 def _nodes(count: int) -> str:
-    return f"{count} node" if count == 1 else f"{count} nodes"
+    return counted(count, "node")

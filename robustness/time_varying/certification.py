@@ -20,6 +20,7 @@ from robustness.digraph import GraphLike
 from robustness.errors import InternalError, InvalidParameter
 from robustness.limits import Limits, Progress
 from robustness.results import Verdict
+from robustness.spelled import counted
 from robustness.time_varying.front import check_joint_robustness
 from robustness.time_varying.results import JointResult
 from robustness.time_varying.sequence import TimeVaryingGraph, as_time_varying
@@ -144,7 +145,8 @@ def _refutation(sequence: TimeVaryingGraph, result: JointResult) -> tuple[int, d
         return result.examined, {"kind": "no-window"}, b""
     if found.witness is None:
         raise InvalidParameter(
-            f"({result.r},{result.s})-robust on {sequence.n} node(s) is settled by convention: nothing to certify"
+            f"({result.r},{result.s})-robust on {counted(sequence.n, 'node')} is settled by convention: "
+            "nothing to certify"
         )
     union = sequence.union(found.start, found.length)
     sets = {"S1": sorted(union.ids(found.witness.S1)), "S2": sorted(union.ids(found.witness.S2))}

@@ -23,6 +23,7 @@ from robustness.files.edge_list import columns_of
 from robustness.files.found import COLUMN_NAMES, ReadingOptions
 from robustness.files.rows import Rows, content_of, is_number, rows_of, split_lines
 from robustness.files.text import warn_lossy
+from robustness.spelled import counted
 from robustness.time_varying.sequence import TimeVaryingGraph
 
 __all__ = ["STEP_LIMIT", "bin_length", "decode_contacts"]
@@ -74,6 +75,7 @@ def decode_contacts(
     else:
         filled = [(number, text) for number, text in content.lines if text.strip(" ,;\t")]
         contacts = _table(rows_of(replace(content, lines=filled)), reading, notes) if filled else []
+    is_doubtful = not both_ways and reading.directed is None and content.is_directed is None
     both_ways = both_ways or reading.directed is False
     if content.is_directed is not None and reading.directed is None:
         both_ways = both_ways or not content.is_directed
@@ -81,15 +83,19 @@ def decode_contacts(
         raise UnreadableTopology("a contact trace holds at least one contact time,source,target, and here is none")
     met = [contact for contact in contacts if contact.source not in _NOBODY and contact.target not in _NOBODY]
     if len(met) < len(contacts):
-        notes.append(f"{len(contacts) - len(met)} rows with -1 are contacts with nobody")
+        notes.append(
+            f"{counted(len(contacts) - len(met), 'row with -1 is a contact', 'rows with -1 are contacts')} with nobody"
+        )
     nodes = dict.fromkeys(end for contact in contacts for end in (contact.source, contact.target) if end not in _NOBODY)
     steps = _steps(contacts, met, step)
     sequence = TimeVaryingGraph.from_arcs(nodes, steps, period, directed=not both_ways)
     way = (
         "a contact is both arcs" if both_ways else "the target of a contact hears its source, --undirected if both hear"
     )
-    sequence.read_as = "; ".join([f"{len(met)} contacts of {len(nodes)} nodes in {len(steps)} steps", way, *notes])
-    warn_lossy(f"read as: {sequence.read_as}")
+    size = f"{counted(len(met), 'contact')} of {counted(len(nodes), 'node')} in {counted(len(steps), 'step')}"
+    sequence.read_as = "; ".join([size, way, *notes])
+    if is_doubtful:
+        warn_lossy(f"read as: {sequence.read_as}")
     return sequence
 
 
@@ -149,7 +155,9 @@ def _table(rows: Rows, reading: ReadingOptions, notes: list[str]) -> list[_Conta
     numbered = list(zip(body, lines, strict=True))
     width = len(rows.cells[0])
     if width < 3:
-        raise UnreadableTopology(f"line {rows.lines[0]}: a contact is time,source,target, not {width} column(s)")
+        raise UnreadableTopology(
+            f"line {rows.lines[0]}: a contact is time,source,target, not {counted(width, 'column')}"
+        )
     names = set(head or []) | {str(name) for name in (reading.columns or {})}
     is_interval = all(_is_there(part, head, reading) for part in ("start", "end"))
     wanted = ("start", "end", "source", "target") if is_interval else ("time", "time", "source", "target")
@@ -203,9 +211,13 @@ def _require_time_first(rows: list[list[str]], lines: list[int]) -> None:
     is_square = len(rows) == len(rows[0]) and all(is_number(cell) for row in rows for cell in row)
     hint = "say where they stand, for example --columns time=1,source=2,target=3"
     if is_square and len({cell for row in rows for cell in row}) <= 2:
-        raise UnreadableTopology(f"{len(rows)} rows of {len(rows)} numbers may be a matrix and no contacts: {hint}")
+        raise UnreadableTopology(
+            f"{counted(len(rows), 'row')} of {counted(len(rows), 'number')} may be a matrix and no contacts: {hint}"
+        )
     if len(rows[0]) > 3 and all(is_number(row[3]) for row in rows) and len({row[3] for row in rows}) > 1:
-        raise UnreadableTopology(f"line {lines[0]}: of {len(rows[0])} columns of numbers any may be the time: {hint}")
+        raise UnreadableTopology(
+            f"line {lines[0]}: of {counted(len(rows[0]), 'column')} of numbers any may be the time: {hint}"
+        )
     if not all(is_number(cell) for cell in columns[2]):
         return  # the last column names nodes
     rises = [_is_rising(column) for column in (columns[0], columns[2])]

@@ -29,6 +29,7 @@ from robustness.digraph import GraphLike
 from robustness.errors import InternalError, InvalidParameter
 from robustness.limits import Limits, Progress
 from robustness.results import Verdict
+from robustness.spelled import counted
 from robustness.time_varying.results import JointResult, Unions, UnionVerdict, Violation
 from robustness.time_varying.sequence import SlidingUnion, TimeVaryingGraph, as_time_varying
 from robustness.time_varying.unions import RULES, TIME_IS_UP, UnionDecider
@@ -208,7 +209,7 @@ class _Survey:
         """Decide the windows of ``length`` steps, up to the first that fails unless all are wanted."""
         starts = self._sequence.window_starts(length)
         if not starts:
-            reason = f"no window of {length} steps fits in a trace of {len(self._sequence)} steps"
+            reason = f"no window of {counted(length, 'step')} fits in a trace of {counted(len(self._sequence), 'step')}"
             return self._result(Verdict.NOT_ROBUST, examined=length, reason=reason)
         chart = _Chart()
         violation, undecided, unsure = None, "", ""
@@ -284,7 +285,7 @@ class _Survey:
         self._window.move(start, length)
         if self._progress is not None and time.monotonic() - self._told > _PROGRESS_SECONDS:
             self._told = time.monotonic()
-            note = f"window of {length} steps from step {start} of {len(self._sequence)}"
+            note = f"window of {counted(length, 'step')} from step {start} of {len(self._sequence)}"
             self._progress(Progress(self._decider.settled.total(), note))
         return self._decider.decide(self._window, known_robust=known_robust)
 

@@ -10,9 +10,9 @@ from typing import Any, overload
 from robustness.digraph import Digraph
 from robustness.errors import Undecided
 from robustness.evidence import Growth
-from robustness.natural_order import in_natural_order
 from robustness.results import Verdict, Witness
-from robustness.showing import Shown, labels_in_words
+from robustness.showing import Shown
+from robustness.spelled import counted
 from robustness.time_varying.sequence import TimeVaryingGraph
 
 __all__ = ["JointResult", "UnionVerdict", "Unions", "Violation"]
@@ -177,9 +177,10 @@ class JointResult(Shown):
             known = f"; no window shorter than {self.at_least} will do" if self.at_least > 1 else ""
             return f"undecided: whether jointly {what}{known}"
         if self.verdict is Verdict.NOT_ROBUST:
-            return f"not jointly {what}" + (f" over {self.asked_window} steps" if self.asked_window else "")
+            return f"not jointly {what}" + (f" over {counted(self.asked_window, 'step')}" if self.asked_window else "")
         kind = "every" if self.asked_window else "smallest window: every"
-        return f"jointly {what}; {kind} {'single step' if self.window == 1 else f'{self.window} consecutive steps'}"
+        steps = "single step" if self.window == 1 else counted(self.window or 0, "consecutive step")
+        return f"jointly {what}; {kind} {steps}"
 
     def pictured(self) -> Digraph | None:
         """Return the union of the window that fails, or else of the first one that was decided."""
@@ -199,8 +200,8 @@ class JointResult(Shown):
             rows.append((f"window at most tau = {self.tau}", "yes" if self.within_tau else "no"))
         for name, found in (("violating window", self.violation), ("one step shorter fails", self.shorter_fails)):
             if found is not None:
-                rows.append((name, f"{found.length} steps from step {found.start}"))
-                rows += [(part, labels_in_words(side)) for part, side in _sides(found.witness)]
+                rows.append((name, f"{counted(found.length, 'step')} from step {found.start}"))
+                rows += [] if found.witness is None else found.witness.in_words(self.pictured())
         return rows
 
     def as_dict(self) -> dict[str, Any]:
@@ -224,9 +225,5 @@ class JointResult(Shown):
 def _as_dict(found: Violation | None) -> dict[str, Any] | None:
     if found is None:
         return None
-    sides = {name: in_natural_order(side) for name, side in _sides(found.witness)}
-    return {"start": found.start, "length": found.length, "witness": sides or None}
-
-
-def _sides(witness: Witness | None) -> list[tuple[str, frozenset[Any]]]:
-    return [] if witness is None else [("S1", witness.S1), ("S2", witness.S2)]
+    witness = None if found.witness is None else found.witness.as_dict()
+    return {"start": found.start, "length": found.length, "witness": witness}

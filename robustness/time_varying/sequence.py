@@ -16,12 +16,14 @@ import numpy.typing as npt
 from certificates.graph import Label
 from robustness.digraph import Digraph, GraphLike, as_digraph, without_loops
 from robustness.errors import InvalidGraph, InvalidParameter
+from robustness.spelled import counted
+from robustness.told import Told, drawing, small_picture
 
 __all__ = ["SlidingUnion", "TimeVaryingGraph", "as_time_varying"]
 
 
 @final
-class TimeVaryingGraph:
+class TimeVaryingGraph(Told):
     """A sequence of graphs ``G[0], G[1], ...`` over one node set.
 
     Parameters
@@ -181,7 +183,7 @@ class TimeVaryingGraph:
         if 0 <= k < len(self):
             return k
         if self.period is None or k < 0:
-            raise InvalidParameter(f"a trace of {len(self)} steps has steps 0..{len(self) - 1}, not {k}")
+            raise InvalidParameter(f"a trace of {counted(len(self), 'step')} has steps 0..{len(self) - 1}, not {k}")
         return self.prefix + (k - self.prefix) % self.period
 
     def window_starts(self, length: int) -> range:
@@ -211,9 +213,23 @@ class TimeVaryingGraph:
         arcs = ((labels[u], labels[v]) for u, v in zip(tails.tolist(), heads.tolist(), strict=True))
         return Digraph(labels, arcs, directed=self.directed)
 
-    def __repr__(self) -> str:
+    def summary(self) -> str:
+        """Return what repeats and how large it is, in one line."""
         kind = {None: "finite trace", len(self): "periodic"}.get(self.period, f"prefix + period {self.period}")
-        return f"<TimeVaryingGraph {kind}, {self.n} nodes, {len(self)} steps, {len(self.arc_codes)} arcs in all>"
+        size = f"{counted(self.n, 'node')}, {counted(len(self), 'step')}"
+        return f"{kind}, {size}, {counted(len(self.arc_codes), 'arc')} in all"
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return what every document says about the sequence, as JSON-ready values; ``arcs`` are those of any step."""
+        shape = {"nodes": self.n, "steps": len(self), "prefix": self.prefix, "period": self.period}
+        return {**shape, "arcs": len(self.arc_codes), "directed": self.directed, "read_as": self.read_as or None}
+
+    def evidence(self) -> list[tuple[str, str]]:
+        """Return how the file was read, as a row of a name and a text."""
+        return [("read as", self.read_as)] if self.read_as else []
+
+    def _small_picture(self) -> str:
+        return small_picture(self.n, lambda axes: drawing("network").draw(self, ax=axes))
 
 
 class SlidingUnion:

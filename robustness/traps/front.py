@@ -102,4 +102,5 @@ def find_trap(
         algorithm=answer.decided_by,
         stats=answer.stats,
         seconds=time.monotonic() - started,
+        graph=graph,
     )

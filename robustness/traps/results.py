@@ -8,9 +8,11 @@ from types import MappingProxyType
 from typing import Any
 
 from certificates.graph import Label
+from robustness.digraph import Digraph
 from robustness.errors import Undecided
 from robustness.natural_order import in_natural_order
-from robustness.showing import Shown, labels_in_words
+from robustness.showing import Shown
+from robustness.spelled import labels_in_words
 
 __all__ = ["TrapResult"]
 
@@ -32,6 +34,8 @@ class TrapResult(Shown):
     stats : mapping
         Counters, the lemma, or the reason why nothing is claimed.
     seconds : float
+    graph : Digraph or None
+        What the question was about, for :meth:`plot`.
     """
 
     exists: bool | None
@@ -44,6 +48,7 @@ class TrapResult(Shown):
     algorithm: str = ""
     stats: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}), compare=False, hash=False)
     seconds: float = field(default=0.0, compare=False)
+    graph: Digraph | None = field(default=None, compare=False)
 
     def __bool__(self) -> bool:
         raise TypeError("a TrapResult has three values, so it has no truth value: compare .exists, or call decided()")
@@ -56,13 +61,16 @@ class TrapResult(Shown):
             return f"undecided: whether there is a {bound}"
         if not self.exists:
             return f"no {bound}"
-        sets = (("M", self.M), ("S1", self.S1), ("S2", self.S2))
-        return f"{bound}: " + ", ".join(f"{name} = {labels_in_words(labels)}" for name, labels in sets)
+        return f"{bound}: " + ", ".join(f"{name} = {text}" for name, text in self._sets())
 
     def evidence(self) -> list[tuple[str, str]]:
         """Return what the answer rests on, as rows of a name and a text."""
-        sets = (("M", self.M), ("S1", self.S1), ("S2", self.S2)) if self.exists else ()
-        return [*((name, labels_in_words(labels)) for name, labels in sets), ("algorithm", self.algorithm)]
+        return [*(self._sets() if self.exists else ()), ("algorithm", self.algorithm)]
+
+    def _sets(self) -> list[tuple[str, str]]:
+        nodes = None if self.graph is None else self.graph.labels
+        sets = (("M", self.M), ("S1", self.S1), ("S2", self.S2))
+        return [(name, labels_in_words(labels, nodes)) for name, labels in sets]
 
     def as_dict(self) -> dict[str, Any]:
         """Return the answer as JSON-ready values."""

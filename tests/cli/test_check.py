@@ -201,12 +201,25 @@ class TestText:
 
 class TestTalk:
     def test_warnings_go_to_standard_error_once(self) -> None:
-        path = str(DATA / "square.graphml")
-        outcome = CliRunner().invoke(robustness, ["check", path])
+        outcome = CliRunner().invoke(robustness, ["check", str(DATA / "square.edgelist")])
         assert outcome.exit_code == 0
-        said = "read as: undirected, 4 nodes, 4 links; GraphML reads every label as text"
-        assert outcome.stderr == f"warning: {said}\n"
+        assert outcome.stderr.startswith(
+            "warning: read as: undirected, 4 nodes, 4 links; links between columns 1 and 2"
+        )
+        assert outcome.stderr.endswith("; --directed if links run one way\n")
+        assert outcome.stderr.count("\n") == 1
         assert "warning" not in outcome.stdout
+
+    def test_one_reading_is_no_warning_but_a_note_where_a_word_is_due(self, tmp_path: Path) -> None:
+        assert CliRunner().invoke(robustness, ["check", str(DATA / "square.graphml")]).stderr == ""
+        named = tmp_path / "named.gml"
+        nodes = "".join(f'node [ id {k} label "Truck {k}" ] ' for k in range(3))
+        named.write_text(f"graph [ directed 1 {nodes} edge [ source 0 target 1 ] ]")
+        told = CliRunner().invoke(robustness, ["check", str(named)]).stderr
+        assert told == "note: read as: directed, 3 nodes, 1 link; nodes are named by their label\n"
+        edges = ["check", "--directed", str(DATA / "square.edgelist")]
+        assert CliRunner().invoke(robustness, edges).stderr.startswith("note: read as: directed")
+        assert CliRunner().invoke(robustness, ["-q", *edges]).stderr == ""
 
     @pytest.mark.parametrize("arguments", [["-q", "check"], ["check", "-q"]])
     def test_quiet_leaves_results_and_errors(self, arguments: list[str]) -> None:

@@ -136,11 +136,11 @@ def test_text_of_a_refutation() -> None:
 def test_text_of_other_corners() -> None:
     trace = TimeVaryingGraph.from_arcs(range(2), [[(0, 1)]])
     short = joint("-r", "1", "-s", "1", "--window", "2", sequence=trace).stdout
-    assert "no window of 2 steps fits in a trace of 1 steps" in short
+    assert "no window of 2 steps fits in a trace of 1 step" in short
     empty = TimeVaryingGraph.from_arcs(range(2), [[]])
     single = joint("-r", "1", "-s", "2", "--window", "1", "--tau", "1", sequence=empty).stdout.splitlines()
     assert single[:2] == [
-        "not robust: the network is not jointly (1,2)-robust over every 1 step",
+        "not robust: the network is not jointly (1,2)-robust over every step",
         "violating window: step 0",
     ]
     assert (
@@ -149,7 +149,7 @@ def test_text_of_other_corners() -> None:
     )
     assert "smallest L none" in joint("-r", "1", "--curve", sequence=empty).stdout
     at_once = joint("-r", "1", sequence=trace).stdout.splitlines()
-    assert at_once[0] == "robust: the network is jointly 1-robust over every 1 step"
+    assert at_once[0] == "robust: the network is jointly 1-robust over every step"
     assert "curve      not known" in joint("-r", "2", "--timeout", "1e-9", "--curve").stdout
     undecided = joint("-r", "2", "--timeout", "1e-9").stdout
     first = "undecided: whether the network is jointly 2-robust is not known (the time limit was reached)"

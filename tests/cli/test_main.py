@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import pty
+import re
 import subprocess
 import sys
 from importlib.metadata import version
@@ -164,9 +165,11 @@ class TestProgress:
 
 
 def test_sets_are_in_canonical_order() -> None:
-    assert set_text({"b", 10, 9, "1", (1, "x")}) == "{9, 10, '1', b, (1, 'x')}"
-    assert set_text(range(100)).endswith("58, 59, … 40 more}")
-    assert set_text(range(100), whole=True).endswith("98, 99}")
+    nodes = ("b", 10, 9, "1", (1, "x"))
+    assert set_text(nodes, nodes) == "{9, 10, 1, b, (1, x)}"
+    assert set_text({1, "1"}, (1, "1", "2")) == "{1, '1'}"
+    assert set_text(range(100), range(100)).endswith("58, 59, … 40 more}")
+    assert set_text(range(100), range(100), whole=True).endswith("98, 99}")
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
@@ -174,3 +177,21 @@ def test_the_shell_completes(shell: str) -> None:
     assert "ROBUSTNESS_COMPLETE" in python("-m", "cli", _ROBUSTNESS_COMPLETE=f"{shell}_source")
     asked = {"COMP_WORDS": "robustness ch", "COMP_CWORD": "ch" if shell == "fish" else "1"}
     assert "check" in python("-m", "cli", _ROBUSTNESS_COMPLETE=f"{shell}_complete", **asked)
+
+
+@pytest.mark.parametrize("command", ["check", "attack", "simulate", "joint", "survey", "report", "verify"])
+def test_bash_is_left_to_complete_files(command: str) -> None:
+    asked = {"COMP_WORDS": f"robustness {command} plat", "COMP_CWORD": "2"}
+    assert python("-m", "cli", _ROBUSTNESS_COMPLETE="bash_complete", **asked).strip() == "file,plat"
+
+
+def test_every_option_says_what_it_takes_and_what_it_is_for() -> None:
+    context = click.Context(main.robustness)
+    for name in main.robustness.list_commands(context):
+        command = main.robustness.get_command(context, name)
+        assert command is not None
+        for option in command.params:
+            if isinstance(option, click.Option) and not option.hidden:
+                shown, text = option.get_help_record(click.Context(command)) or ("", "")
+                assert not re.search(r" (INTEGER|FLOAT|FILENAME|DIRECTORY)\b", shown), f"{name} {shown}"
+                assert re.sub(r"\[.*?\]", "", text).strip(), f"{name} {shown} says nothing"

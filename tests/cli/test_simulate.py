@@ -64,8 +64,8 @@ class TestSimulate:
             "rule": "adp-msr",
             "model": "malicious",
             "f": 1,
-            "adversary": "Ramp(slope=0.05)",
-            "schedule": "Schedule(update_times=EveryStep(), delay_rule=NoDelays(), tau=0)",
+            "adversary": "ramp (slope 0.05)",
+            "schedule": "every step, no delays",
             "tau": 0,
             "steps": 1000,
         }

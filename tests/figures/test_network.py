@@ -112,8 +112,9 @@ class TestDraw:
             ax = axes()
             assert answer.plot(ax=ax) is ax
         with pytest.raises(InvalidParameter, match="carries no graph"):
-            find_trap(WHEEL, 1).plot()
+            rb.Witness(frozenset({0}), frozenset({1})).plot()
         assert find_trap(WHEEL, 1).plot(WHEEL, ax=axes()) is not None
+        assert rb.check_rs_robustness(PETERSEN, 4).witness.plot(PETERSEN, ax=axes()) is not None
 
     def test_the_legend_names_what_is_there_and_covers_no_node(self, tmp_path: Path) -> None:
         figure = Figure(figsize=(8, 6), layout="constrained")
@@ -353,7 +354,7 @@ class TestNotebooks:
             assert "\n" not in repr(answer)
             assert len(repr(answer)) < 140
             json.dumps(answer.as_dict(), allow_nan=False)
-        assert "<img" not in find_trap(WHEEL, 1)._repr_html_()
+        assert "<img" not in rb.check_rs_robustness(PETERSEN, 4).witness._repr_html_()
 
     def test_labels_are_escaped_and_in_natural_order(self) -> None:
         names = {i: f"<i>{i}" for i in range(11)}

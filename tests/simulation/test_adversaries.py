@@ -218,7 +218,7 @@ class TestFaultModels:
 
     @pytest.mark.parametrize("model", ["malicious", "byzantine"])
     def test_f_total(self, model: str) -> None:
-        with pytest.raises(InvalidParameter, match=r"at most f = 1 nodes are malicious, not 2"):
+        with pytest.raises(InvalidParameter, match=r"at most f = 1 node is malicious, not 2"):
             simulate(
                 Scenario(COMPLETE, 1, model=model, steps=1), [START, Start(frozenset({0, 1}), (0.0,) * 5, (0.0,) * 5)]
             )

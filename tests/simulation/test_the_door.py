@@ -73,6 +73,7 @@ class TestConverted:
         ({"steps": 10.5}, "the number of steps is an integer"),
         ({"rule": 3}, "an update rule is one of"),
         ({"rule": Sine}, "an update rule is one of"),
+        ({"rule": lambda own: own}, r"is called as <lambda>\(own, heard\), and this one takes other arguments"),
         ({"model": 3}, "a fault model is one of"),
         ({"model": ["malicious"]}, "a fault model is one of"),
         ({"adversary": "sinus"}, "an adversary is one of constant"),

@@ -201,6 +201,6 @@ def test_a_list_of_graphs_is_a_finite_trace() -> None:
 
 
 def test_repr_says_what_kind_it_is() -> None:
-    assert repr(TimeVaryingGraph(path_steps())) == "<TimeVaryingGraph finite trace, 4 nodes, 3 steps, 6 arcs in all>"
+    assert repr(TimeVaryingGraph(path_steps())) == "<TimeVaryingGraph: finite trace, 4 nodes, 3 steps, 6 arcs in all>"
     assert "periodic" in repr(TimeVaryingGraph(path_steps(), period=3))
     assert "prefix + period 2" in repr(TimeVaryingGraph(path_steps(), period=2))

@@ -45,6 +45,7 @@ from robustness.kernels.layout import (
     SYMMETRIC,
 )
 from robustness.limits import Limits, Progress
+from robustness.spelled import counted
 from robustness.transcripts import Branch, Piece, Spool, Transcript
 
 __all__ = ["MOST_NODES", "decide"]
@@ -300,7 +301,7 @@ class _Search:
         if number == 0 and self.limits.progress is not None and now - self.reported > 0.2:
             self.reported = now
             nodes = int(self.counters[:, NODES].sum())
-            self.limits.progress(Progress(nodes, f"{len(self.queue) + self.busy} cubes open"))
+            self.limits.progress(Progress(nodes, f"{counted(len(self.queue) + self.busy, 'cube')} open"))
         return self.stopped
 
 

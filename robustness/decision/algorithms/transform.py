@@ -33,6 +33,7 @@ from robustness.errors import Undecided
 from robustness.evidence import Exhausted, Pair
 from robustness.limits import Limits, Progress
 from robustness.results import Bound, Bounds
+from robustness.spelled import counted
 
 __all__ = ["available_memory", "decide", "largest_s", "memory_needed", "memory_suffices", "profile"]
 
@@ -273,8 +274,8 @@ def memory_suffices(n: int) -> bool:
 def _require_memory(n: int) -> None:
     if not memory_suffices(n):
         raise Undecided(
-            f"the transform needs 1.5 * 2^{n} bytes for {n} nodes, more than {_SHARE:.0%} of the memory available: "
-            "use subset-search"
+            f"the transform needs 1.5 * 2^{n} bytes for {counted(n, 'node')}, more than {_SHARE:.0%} of the memory "
+            "available: use subset-search"
         )
 
 

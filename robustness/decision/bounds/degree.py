@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from robustness.digraph import Digraph
 from robustness.results import Bound, Bounds
+from robustness.spelled import counted
 
 __all__ = ["degree_bound", "robust_by_degree", "sufficient_degree"]
 
@@ -35,4 +36,4 @@ def degree_bound(graph: Digraph) -> Bound:
         return Bounds.by_convention(graph.n).lower
     least = int(graph.in_degrees.min())
     value = max(0, least - graph.n // 2 + 1)
-    return Bound(value, f"degree: every node hears at least {least} of {graph.n} nodes" if value else "none")
+    return Bound(value, f"degree: every node hears at least {least} of {counted(graph.n, 'node')}" if value else "none")

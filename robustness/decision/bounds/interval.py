@@ -13,6 +13,7 @@ from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph
 from robustness.limits import Steps
 from robustness.results import Bound, Bounds, Witness
+from robustness.spelled import counted
 
 __all__ = ["all_bounds", "bounds", "quick_bounds"]
 
@@ -133,7 +134,12 @@ def _in_turn(graph: Digraph, seed: int, steps: Steps, thorough: bool) -> Iterato
             if growth is None:
                 break
             known += 1
-            yield True, Bound(known, f"growth: {len(growth.seed)} robust nodes, then each node hears {known} before it")
+            yield (
+                True,
+                Bound(
+                    known, f"growth: {counted(len(growth.seed), 'robust node')}, then each node hears {known} before it"
+                ),
+            )
         if thorough and known < upper and graph.n <= MOST_SPECTRAL_NODES:
             spectral = spectral_bound(graph)
             known = max(known, spectral.value)

@@ -11,6 +11,7 @@ from robustness.decision.bounds.spectral import MOST_SPECTRAL_NODES, spectral_ev
 from robustness.definitions import largest_conceivable_r
 from robustness.evidence import DegreeRule, Evidence, Pair, ViolatingPair
 from robustness.limits import Limits, Steps
+from robustness.spelled import counted
 
 __all__ = ["HEURISTIC_STEPS", "settle"]
 
@@ -43,7 +44,9 @@ def settle(question: Question, limits: Limits) -> Answer | None:
     pair = at_once(graph, r)
     if pair is not None:
         half = r > largest_conceivable_r(graph.n)
-        return _violated(pair, "r* <= ceil(n/2)" if half else f"a node hears {int(graph.in_degrees.min())} < {r} nodes")
+        return _violated(
+            pair, "r* <= ceil(n/2)" if half else f"a node hears {int(graph.in_degrees.min())} < {counted(r, 'node')}"
+        )
     if robust_by_degree(graph, r):
         return _answer(DegreeRule(), "degree rule")
     if r == 1:
@@ -55,7 +58,7 @@ def settle(question: Question, limits: Limits) -> Answer | None:
     steps = Steps(HEURISTIC_STEPS, limits.expired)
     growth = find_growth(graph, r, s, steps=steps.part(steps.left // 3))
     if growth is not None:
-        return _answer(growth, f"growth from {len(growth.seed)} nodes")
+        return _answer(growth, f"growth from {counted(len(growth.seed), 'node')}")
     spectral = spectral_evidence(graph) if graph.n <= MOST_SPECTRAL_NODES else None
     if spectral is not None and spectral.r >= r + s - 1:
         return _answer(spectral, f"lambda_2 > {spectral.mu}")

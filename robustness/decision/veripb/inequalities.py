@@ -28,6 +28,7 @@ from dataclasses import dataclass, field
 
 from certificates.graph import CanonicalGraph
 from certificates.rules import Question
+from robustness.spelled import counted
 
 __all__ = ["Model", "inequality", "negated"]
 
@@ -130,9 +131,10 @@ class Model:
     def text(self) -> str:
         """Return the model as an OPB file."""
         variables = len(self.swap())
+        size = f"{counted(self.graph.n, 'node')}, {counted(self.graph.arc_count, 'arc')}"
         head = [
             f"* #variable= {variables} #constraint= {len(self.lines)}",
             f"* x and y are a violating pair of ({self.r},{self.s}): satisfiable exactly when the graph is not robust",
-            f"* graph: {self.graph.n} nodes, {self.graph.arc_count} arcs, SHA-256 {self.graph.sha256}",
+            f"* graph: {size}, SHA-256 {self.graph.sha256}",
         ]
         return "\n".join(head + self.lines) + "\n"
