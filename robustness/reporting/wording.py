@@ -78,6 +78,8 @@ def in_models(models: Sequence[str]) -> str:
 
 def _without_gate(survey: Survey, total: int) -> str:
     read = [row for row in survey.rows if not row.error]
+    if not read:
+        return f"Nothing is known about {counted(total, 'network')}: none was reached, or could be read."
     rest = "" if len(read) == total else f" {total - len(read)} could not be read or were not reached."
     if not survey.models:
         told = counted(len(read), "network was", "networks were")
