@@ -104,7 +104,7 @@ def duration_in_words(seconds: float) -> str:
         if seconds < most:
             value = max(seconds / unit, 1.0)
             return f"{value:.0f} {name}" if value >= 10 or unit == 1 else f"{value:.1f} {name}"
-    return f"{seconds / 31_557_600:.2g} years"
+    return f"{float(f'{seconds / 31_557_600:.2g}'):,.0f} years"
 
 
 @dataclass(slots=True)
