@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .mending import FILE, Kept, answer, caps_in, costs_in, goal_and_files, links_in, tell, tell_bought
+from .answered import answer, tell
+from .mending import FILE, Kept, caps_in, costs_in, goal_and_files, links_in
 from .options import graph_argument, load_graph
 from .output import Console
 from .query import Query, query_options
@@ -74,7 +75,7 @@ def command(
     best links so far, checked, and the lower bound.
     """
     from robustness.files.writing import require_different_files
-    from robustness.mending import MendResult, best_within, mend
+    from robustness.mending import BudgetResult, MendResult, best_within, mend
     from robustness.mending.front import links_within
 
     if candidates is not None and reach is not None:
@@ -101,20 +102,14 @@ def command(
         "one_way": True if one_way else None,
     }
 
-    def work(line: Any, keep: Any) -> MendResult:
-        return mend(graph, goals, budget=budget, on_improvement=keep, **constraints, **query.effort(line))
+    def work(line: Any, keep: Any) -> MendResult | BudgetResult:
+        effort = {"on_improvement": keep, **constraints, **query.effort(line)}
+        if not goals and budget is not None:
+            return best_within(graph, budget, model=climbed, **effort)
+        return mend(graph, goals, budget=budget, **effort)
 
-    if not goals and budget is not None:
-        tell_bought(
-            ctx,
-            console,
-            query,
-            SCHEMA,
-            lambda line: best_within(graph, budget, model=climbed, **constraints, **query.effort(line)),
-            kept,
-        )
-    found, is_interrupted = answer(console, query, work)
-    tell(ctx, console, query, SCHEMA, found, is_interrupted=is_interrupted, kept=kept)
+    answered = answer(console, query, work)
+    tell(ctx, console, query, SCHEMA, answered, kept)
 
 
 def _positions(source: str, graph: Digraph) -> dict[Any, tuple[float, float]]:

@@ -1,4 +1,4 @@
-"""What ``mend`` and ``thin`` share: the goal, lists of links in files, and how an answer is told and kept."""
+"""What ``mend`` and ``thin`` are asked: the goal, lists of links and caps in files, and what to write."""
 
 from __future__ import annotations
 
@@ -12,32 +12,23 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from robustness.spelled import plural
-
 from .choices import THREAT_MODEL_NAMES
-from .exit_codes import ExitCode
-from .interruption import Overrun
-from .output import Console, ProgressLine, graph_document, set_text
-from .query import Query
 
 if TYPE_CHECKING:
     from collections.abc import Hashable
 
     from robustness.digraph import Digraph
-    from robustness.mending import BudgetResult, Goal, MendResult
+    from robustness.mending import Goal
 
 __all__ = [
     "FILE",
     "Kept",
-    "answer",
     "caps_in",
     "costs_in",
     "goal_and_files",
     "goals_from",
     "link_costs",
     "links_in",
-    "tell",
-    "tell_bought",
 ]
 
 #: A file that is read or written whole.
@@ -71,9 +62,6 @@ _KEEP_OPTIONS = (
     ),
     click.option("--plot", "picture", type=FILE, metavar="FILE", help="Draw it, new links thick: .svg, .png or .pdf."),
 )
-
-#: r* and s are told for networks of up to so many nodes: within a second.
-_FEW_NODES = 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,160 +209,3 @@ def _listed(path: Path, graph: Digraph) -> tuple[Digraph, dict[Hashable, Hashabl
             f"{path}: the node {unknown[0]!r} is none of the network: name links between its nodes"
         )
     return listed, {label: by_name[str(label)] for label in listed.labels}
-
-
-def answer(
-    console: Console, query: Query, work: Callable[[ProgressLine, Callable[[MendResult], None]], MendResult]
-) -> tuple[MendResult | None, bool]:
-    """Return the answer and whether it was interrupted: then it is the best that was known."""
-    from robustness.mending.master import load_solver
-
-    if query.timeout is not None:
-        load_solver()
-    latest: list[MendResult] = []
-    with ProgressLine(console) as line:
-        try:
-            return query.wait_for(lambda: work(line, latest.append), line), False
-        except (KeyboardInterrupt, Overrun) as stop:
-            return (latest[-1] if latest else None), isinstance(stop, KeyboardInterrupt)
-
-
-def tell(
-    ctx: click.Context,
-    console: Console,
-    query: Query,
-    schema: str,
-    found: MendResult | None,
-    *,
-    is_interrupted: bool,
-    kept: Kept,
-) -> None:
-    """Print an answer, write what was asked for, and end with the exit code that it deserves."""
-    if found is None:
-        message = "interrupted: nothing is claimed" if is_interrupted else "undecided: nothing was found in time"
-        code = ExitCode.INTERRUPTED if is_interrupted else ExitCode.UNDECIDED
-        console.error(message)
-        console.error_document(code, message)
-        ctx.exit(code)
-    after = _facts(found.graph) if found.cost is not None else None
-    before = _facts(found.before)
-    _keep(console, query, found, kept)
-    if query.as_json:
-        facts = {"graph": graph_document(found.before), **found.as_dict(), "before": before, "after": after}
-        console.document(schema, facts)
-    else:
-        console.answer(_lines(found, before, after))
-    if is_interrupted:
-        console.error("interrupted: what is printed holds, nothing else is claimed")
-        ctx.exit(ExitCode.INTERRUPTED)
-    codes = {"optimal": ExitCode.DONE, "impossible": ExitCode.REFUTED}
-    ctx.exit(codes.get(found.verdict.value, ExitCode.UNDECIDED))
-
-
-def tell_bought(
-    ctx: click.Context,
-    console: Console,
-    query: Query,
-    schema: str,
-    work: Callable[[ProgressLine], BudgetResult],
-    kept: Kept,
-) -> None:
-    """Print what a budget buys, write what was asked for, and end with the exit code that it deserves."""
-    with ProgressLine(console) as line:
-        bought = query.wait_for(lambda: work(line), line)
-    best = bought.best
-    if best is None:
-        console.error(bought.summary())
-        ctx.exit(ExitCode.REFUTED if bought.is_exact else ExitCode.UNDECIDED)
-    _keep(console, query, best, kept)
-    before, after = _facts(best.before), _facts(best.graph)
-    if query.as_json:
-        missed = None if bought.missed is None else bought.missed.goal
-        facts = {"graph": graph_document(best.before), **best.as_dict(), "before": before, "after": after}
-        console.document(schema, facts | {"missed": missed, "is_exact": bought.is_exact})
-    else:
-        console.result("\n".join([bought.summary(), *_lines(best, before, after)[1:]]))
-    ctx.exit(ExitCode.DONE if bought.is_exact else ExitCode.UNDECIDED)
-
-
-def _facts(graph: Digraph) -> dict[str, Any]:
-    """Return how many links there are, and on few nodes r* and s; on more they can take longer than the answer did."""
-    from robustness.decision.front import determine_robustness
-
-    links = graph.arc_count if graph.directed else graph.arc_count // 2
-    if graph.n > _FEW_NODES:
-        return {"links": links, "r": None, "s": None}
-    known = determine_robustness(graph)
-    return {"links": links, "r": known.r, "s": known.s}
-
-
-def _lines(found: MendResult, before: dict[str, Any], after: dict[str, Any] | None) -> list[str]:
-    from robustness.spelled import Spelling, counted
-
-    color = {"optimal": "green", "impossible": "red"}.get(found.verdict.value, "yellow")
-    head, _, rest = found.summary().partition(":")
-    lines = [f"{click.style(head + ':', fg=color, bold=True)}{rest}"]
-    arrow, spelled = "->" if found.one_way else "--", Spelling(found.before.labels)
-    shown = found.dropped if found.thinned else found.links
-    lines += [f"  {'drop' if found.thinned else 'add'}  {spelled(u)} {arrow} {spelled(v)}" for u, v in shown]
-    if found.witness is not None and found.witness.S1:
-        lines.append(f"no candidate breaks this: {found.witness.goal}")
-        sides = (("M", found.witness.M), ("S1", found.witness.S1), ("S2", found.witness.S2))
-        lines += [f"  {name:<3} {set_text(labels, found.before.labels)}" for name, labels in sides if labels]
-    if found.reason:
-        lines.append(f"stopped: {found.reason}")
-    for name, facts in (("before", before), ("after", after)):
-        if facts is not None:
-            known = "" if facts["r"] is None else f", r* = {facts['r']}, s = {facts['s']}"
-            lines.append(f"{name:<7} {counted(facts['links'], 'link')}{known}")
-    return lines
-
-
-def _keep(
-    console: Console,
-    query: Query,
-    found: MendResult,
-    kept: Kept,
-) -> None:
-    """Write the mended network, its certificates, and a picture."""
-    from robustness.files import write_topology
-
-    if kept.certificate is not None:
-        from robustness.mending import certify_mending
-
-        _write(console, kept.certificate, certify_mending(found, **query.effort()))
-    if found.cost is None:
-        return
-    if kept.output is not None:
-        write_topology(found.graph, kept.output)
-        console.talk(f"wrote {kept.output}")
-    if kept.goal_certificate is not None:
-        _write(console, kept.goal_certificate, _certificate(found, query))
-    if kept.picture is not None:
-        from robustness.figures.network import draw_to_file
-
-        draw_to_file(found.graph, found, kept.picture)
-        console.talk(f"wrote {kept.picture}")
-
-
-def _write(console: Console, path: Path, data: bytes | None) -> None:
-    from robustness.files import write_certificate
-
-    if data is None:
-        console.talk("no certificate: a limit was reached, or the kernel has no evidence of this kind")
-    else:
-        write_certificate(path, data)
-        console.talk(f"wrote {path} ({len(data):,} {plural(len(data), 'byte')}, verified)")
-
-
-def _certificate(found: MendResult, query: Query) -> bytes | None:
-    """Return a certificate that the mended network is what the (one) goal asks."""
-    from robustness.decision.certification import certify
-    from robustness.threat_models import certify_tolerance, tolerance
-
-    goal = found.goals[0]
-    effort = query.effort()
-    if goal.r is not None:
-        return certify(found.graph, goal.r, goal.s, **effort).certificate
-    result = tolerance(found.graph, goal.model, **effort)
-    return certify_tolerance(result, **effort).guaranteed

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .mending import FILE, Kept, answer, goal_and_files, link_costs, links_in, tell
+from .answered import answer, tell
+from .mending import FILE, Kept, goal_and_files, link_costs, links_in
 from .options import graph_argument, load_graph
 from .output import Console
 from .query import Query, query_options
@@ -54,5 +55,4 @@ def command(
     def work(line: Any, improved: Any) -> MendResult:
         return thin(graph, goals, cost=price, keep=stay, on_improvement=improved, **query.effort(line))
 
-    found, is_interrupted = answer(console, query, work)
-    tell(ctx, console, query, SCHEMA, found, is_interrupted=is_interrupted, kept=kept)
+    tell(ctx, console, query, SCHEMA, answer(console, query, work), kept)

@@ -28,6 +28,7 @@ __all__ = [
     "check_rs_robustness",
     "check_within",
     "determine_robustness",
+    "determine_within",
     "is_r_robust",
     "is_rs_robust",
     "robustness_profile",
@@ -222,6 +223,13 @@ def determine_robustness(
     limits = Limits.of(time_limit, jobs, seed, progress).spread_over(executor, state)
     limits.within(s_time_limit, "s_time_limit")
     found = determine(graph, algorithm, limits, s_time_limit, on_bounds)
+    return replace(found, seconds=time.monotonic() - started, graph=graph)
+
+
+def determine_within(graph: Digraph, limits: Limits) -> RobustnessResult:
+    """Do what :func:`determine_robustness` does, within ``limits``; see :func:`check_within`."""
+    started = time.monotonic()
+    found = determine(graph, "auto", limits, None, None)
     return replace(found, seconds=time.monotonic() - started, graph=graph)
 
 

@@ -32,9 +32,9 @@ class BudgetResult(Shown):
     best : MendResult or None
         The links for the highest goal that is known to be affordable; None when none is.
     missed : MendResult or None
-        The next goal, which is not, or not known to be; None when there is none.
+        The next goal, which is not, or not known to be; None when there is none, or the work was stopped before it.
     is_exact : bool
-        Whether it is proven that the budget does not buy ``missed``.
+        Whether it is proven that the budget buys nothing more.
     """
 
     best: MendResult | None
@@ -48,7 +48,8 @@ class BudgetResult(Shown):
         """Return the answer in one sentence."""
         bought = "nothing" if self.best is None else f"{self.best.goal}, for {self.best.cost}"
         if self.missed is None:
-            return f"the budget buys {bought}; there is nothing more to reach"
+            more = "there is nothing more to reach" if self.is_exact else "whether it buys more was not decided"
+            return f"the budget buys {bought}; {more}"
         if self.is_exact:
             return f"the budget buys {bought}; it does not buy {self.missed.goal}"
         return f"the budget buys {bought}; whether it buys {self.missed.goal} was not decided within the limit"
@@ -88,6 +89,7 @@ def best_within(
     jobs: int = 1,
     seed: int = 0,
     progress: Callable[[Progress], None] | None = None,
+    on_improvement: Callable[[BudgetResult], None] | None = None,
     **constraints: Any,
 ) -> BudgetResult:
     """Return links within a budget that make G as robust as links within it can, exactly.
@@ -102,6 +104,8 @@ def best_within(
         greatest r, and for it the greatest s, of (r,s)-robustness.
     time_limit, jobs, seed, progress
         As for :func:`robustness.mend`, for all goals together.
+    on_improvement : callable, optional
+        Called with what is known to be bought, as a result that is not exact, each time that is more.
     **constraints
         ``candidates``, ``cost``, ``forbid``, ``require``, ``max_in_degree`` and ``one_way`` of :func:`robustness.mend`.
 
@@ -141,6 +145,8 @@ def best_within(
                 is_exact = is_exact and found.verdict is MendVerdict.IMPOSSIBLE
                 break
             best, goal = found, climb(found, model, graph.n)
+            if on_improvement is not None:
+                on_improvement(BudgetResult(best, None, is_exact=False))
     return BudgetResult(best, missed, is_exact)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, overload
 
-from robustness.digraph import GraphLike, as_digraph
+from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.limits import Limits, Progress
 from robustness.spelled import counted
@@ -19,7 +19,7 @@ from robustness.threat_models.verdicts import judge
 from robustness.time_varying import TimeVaryingGraph
 from robustness.whole_numbers import taking_numpy_integers
 
-__all__ = ["tolerance"]
+__all__ = ["tolerance", "tolerance_within"]
 
 
 @overload
@@ -162,6 +162,15 @@ def tolerance(
         if on_result is not None:
             on_result(result)
     return results[0] if model is not None else ToleranceTable(decisions.graph, tuple(results))
+
+
+def tolerance_within(graph: Digraph, limits: Limits) -> ToleranceTable:
+    """Do what :func:`tolerance` does under every threat model, within ``limits``.
+
+    For those of this package who have limits of their own, and budgets of steps with them.
+    """
+    decisions = Decisions(graph, limits)
+    return ToleranceTable(graph, tuple(judge(decisions, threat) for threat in THREAT_MODELS.values()))
 
 
 def _questions(

@@ -10,7 +10,7 @@ import pytest
 import robustness as rb
 from certificates import verify_mending
 from robustness.errors import InvalidParameter
-from robustness.mending import LeastVerdict, MendVerdict, best_within, certify_mending, confirm_least
+from robustness.mending import BudgetResult, LeastVerdict, MendVerdict, best_within, certify_mending, confirm_least
 from tests.mending.brute_force import candidates, is_robust, least_cost
 
 
@@ -78,3 +78,12 @@ def test_misuse() -> None:
         best_within(nx.path_graph(4), None)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="no truth value"):
         bool(best_within(nx.path_graph(4), 1))
+
+
+def test_what_is_bought_is_told_as_it_grows() -> None:
+    told: list[BudgetResult] = []
+    bought = best_within(nx.path_graph(5), 3, on_improvement=told.append)
+    assert [getattr(each.best, "goal", None) for each in told] == ["1-robust", "2-robust", "(2,2)-robust"]
+    assert all(not each.is_exact and each.missed is None for each in told)
+    assert told[-1].best == bought.best
+    assert told[-1].summary() == "the budget buys (2,2)-robust, for 3; whether it buys more was not decided"
