@@ -53,7 +53,7 @@ def rows() -> tuple[Row, ...]:
 
 def page(target: Path) -> None:
     found = Survey(rows(), tuple(THREAT_MODELS))
-    report_of(found, [], title="Atlas: topohub networks and small graphs", pictures=False).write(target)
+    report_of(found, {}, title="Atlas: topohub networks and small graphs").write(target)
 
 
 if __name__ == "__main__":

@@ -26,7 +26,21 @@ if TYPE_CHECKING:
     from robustness.surveying import Gate, Row, Survey
     from robustness.surveying.row import Findings
 
-__all__ = ["ManyNetworks", "exit_code", "many_networks_options", "require_outputs_apart", "run_survey"]
+__all__ = [
+    "ManyNetworks",
+    "exit_code",
+    "many_networks_options",
+    "require_outputs_apart",
+    "run_survey",
+    "state_option",
+]
+
+state_option = click.option(
+    "--state",
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="FILE",
+    help="A journal of finished rows: the same command goes on where it was stopped or killed.",
+)
 
 _OPTIONS: tuple[Callable[[Any], Any], ...] = (
     click.argument("paths", nargs=-1, metavar="PATH...", shell_complete=complete_files),
@@ -178,7 +192,8 @@ def run_survey(
     *,
     state: Path | None = None,
     mending: float = 0.0,
-    on_findings: Callable[[Findings], None] | None = None,
+    on_findings: Callable[[Findings], Any] | None = None,
+    on_kept: Callable[[Row, Any], bool] | None = None,
     executor: Any = None,
 ) -> tuple[Survey, bool]:
     """Return the survey of the networks and whether it was interrupted; then it holds the rows that were finished."""
@@ -201,6 +216,7 @@ def run_survey(
             certificates=networks.certificates,
             on_row=line.note,
             on_findings=on_findings,
+            on_kept=on_kept,
             reading=networks.reading,
             executor=executor,
         )

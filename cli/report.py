@@ -8,7 +8,14 @@ import click
 
 from robustness.spelled import counted
 
-from .many_networks import ManyNetworks, exit_code, many_networks_options, require_outputs_apart, run_survey
+from .many_networks import (
+    ManyNetworks,
+    exit_code,
+    many_networks_options,
+    require_outputs_apart,
+    run_survey,
+    state_option,
+)
 from .output import Console
 from .query import speaking
 
@@ -27,6 +34,7 @@ __all__ = ["command"]
 )
 @click.option("--title", default="Robustness report", show_default=True, help="The heading of the page.")
 @click.option("--no-pictures", is_flag=True, help="Neither networks nor attacks are drawn: a smaller page.")
+@state_option
 @click.option(
     "--mending",
     type=click.FloatRange(min=0),
@@ -43,6 +51,7 @@ def command(
     output: Path,
     title: str,
     no_pictures: bool,
+    state: Path | None,
     mending: float,
 ) -> None:
     """Write one HTML page about many networks, for somebody who will not open a terminal.
@@ -56,11 +65,12 @@ def command(
     from robustness.reporting.wording import headline
 
     require_drawing(not no_pictures)
-    require_outputs_apart(networks, [output])
-    kept = Kept(networks.gate, mending)
-    found, is_interrupted = run_survey(console, networks, on_findings=kept.add)
-    findings, proposals = tuple(kept.findings), dict(kept.proposals)
-    made = report_of(found, findings, proposals, title=title, gate=networks.gate, pictures=not no_pictures)
+    require_outputs_apart(networks, [output, state])
+    kept = Kept(not no_pictures)
+    found, is_interrupted = run_survey(
+        console, networks, state=state, mending=mending, on_findings=kept.add, on_kept=kept.take
+    )
+    made = report_of(found, dict(kept.sections), title=title, gate=networks.gate)
     made.write(output)
     console.result(headline(found, networks.gate))
     ctx.exit(exit_code(console, found, is_interrupted, [f"wrote {output} ({counted(len(found), 'network')})"]))

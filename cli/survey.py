@@ -8,7 +8,14 @@ import click
 
 from robustness.spelled import counted
 
-from .many_networks import ManyNetworks, exit_code, many_networks_options, require_outputs_apart, run_survey
+from .many_networks import (
+    ManyNetworks,
+    exit_code,
+    many_networks_options,
+    require_outputs_apart,
+    run_survey,
+    state_option,
+)
 from .options import json_option
 from .output import Console
 from .query import cluster_option, joined_cluster, speaking
@@ -26,12 +33,7 @@ _NAMES = tuple(_KINDS.values())
 @many_networks_options
 @click.option("--as", "kind", type=click.Choice(_NAMES), help="How rows are written; told by the suffix of -o.")
 @click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE", help="For the rows.")
-@click.option(
-    "--state",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="FILE",
-    help="A journal of finished rows: the same command goes on where it was stopped or killed.",
-)
+@state_option
 @click.option(
     "--mending",
     type=click.FloatRange(min=0),

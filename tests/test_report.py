@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from html import unescape
 from html.parser import HTMLParser
 from pathlib import Path
@@ -24,6 +25,7 @@ from cli.main import robustness
 from robustness.files import write_topology
 from robustness.reporting import Report
 from robustness.reporting.front import report_of
+from robustness.reporting.section import Section
 from robustness.reporting.wording import headline, in_words
 from robustness.surveying import Row, Survey
 from robustness.threat_models import THREAT_MODELS
@@ -185,7 +187,7 @@ class TestBounds:
         ],
     )
     def test_a_cell_has_both_ends(self, row: Row, cell: str) -> None:
-        assert cell in report_of(Survey((row,), ()), [], pictures=False).html
+        assert cell in report_of(Survey((row,), ()), {}).html
 
     @pytest.mark.parametrize(
         ("names", "groups"),
@@ -199,7 +201,7 @@ class TestBounds:
         ],
     )
     def test_collections_are_offered_where_names_have_them(self, names: list[str], groups: list[str]) -> None:
-        made = report_of(Survey(tuple(map(Row, names)), ()), [], pictures=False)
+        made = report_of(Survey(tuple(map(Row, names)), ()), {})
         options = re.findall(r"<option>(.*?)</option>", made.html)
         assert [unescape(each) for each in options] == groups
         assert Tags(made.html).open == []
@@ -226,6 +228,61 @@ class TestSafety:
         assert first == second
 
 
+class TestState:
+    """A journal holds what a page shows, so a page that was killed becomes the page that it would have been."""
+
+    @staticmethod
+    def page_of(state: Path | None, **how: Any) -> str:
+        made = rb.report(networks(), gate=rb.Gate(survive=1), models=["malicious"], state=state, **how)
+        return re.sub(r"data-value='[\d.]+'>[\d.]+<", "", made.html)
+
+    def test_what_is_kept_is_not_found_out_again(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        fresh, plain = self.page_of(None), self.page_of(None, pictures=False)
+        state = tmp_path / "state"
+        assert self.page_of(state, jobs=2) == fresh
+        monkeypatch.setattr("robustness.surveying.front.measure", lambda *_: 1 / 0)
+        assert self.page_of(state) == fresh
+        assert self.page_of(state, pictures=False) == plain
+
+    def test_what_a_journal_lacks_for_a_page_is_asked_anew(self, tmp_path: Path) -> None:
+        fresh, state = self.page_of(None), tmp_path / "state"
+        rb.survey(networks(), gate=rb.Gate(survive=1), models=["malicious"], state=state, mending=5.0)
+        self.page_of(state, pictures=False)
+        assert state.read_bytes().count(b"\n") == 8
+        assert self.page_of(state) == fresh
+        assert state.read_bytes().count(b"\n") == 12
+        assert self.page_of(state) == fresh
+        assert state.read_bytes().count(b"\n") == 12
+
+    @pytest.mark.parametrize("ending", [signal.SIGKILL, signal.SIGINT])
+    def test_a_killed_run_goes_on_where_it_was(self, ending: signal.Signals, tmp_path: Path) -> None:
+        nets, state, page = tmp_path / "nets", tmp_path / "state", tmp_path / "page.html"
+        nets.mkdir()
+        for k in range(3):
+            write_topology(nx.gnp_random_graph(9, 0.4, seed=k), nets / f"{k}.json")
+        write_topology(nx.random_regular_graph(20, 90, seed=1), nets / "9.json")
+        asked = ["report", str(nets), "--no-models", "--mending", "1", "--state", str(state), "-o", str(page)]
+        with subprocess.Popen(
+            [sys.executable, "-m", "cli", *asked],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            env={**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parent.parent)},
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        ) as process:
+            while not state.exists() or state.read_bytes().count(b"\n") < 3:
+                assert process.poll() is None
+                time.sleep(0.05)
+            process.send_signal(ending)
+            process.wait(timeout=60)
+        assert page.exists() == (ending is signal.SIGINT)
+        (nets / "9.json").unlink()
+        before = state.read_bytes()
+        done = CliRunner().invoke(robustness, asked)
+        assert (done.exit_code, state.read_bytes()) == (0, before)
+        pictures = [tag for tag, attributes in Tags(page.read_text(encoding="utf-8")).tags if tag == "figure"]
+        assert len(pictures) == 3
+
+
 class TestCommand:
     @pytest.fixture
     def folder(self, tmp_path: Path) -> Path:
@@ -248,8 +305,9 @@ class TestCommand:
         assert checked.returncode == 0, checked.stderr
         assert self.run(folder / "complete.json", "-o", page, "--require", 1, "--no-pictures").exit_code == 0
 
-    def test_no_page_over_an_input(self, folder: Path) -> None:
-        done = self.run(folder / "wheel.json", "-o", folder / "wheel.json")
+    @pytest.mark.parametrize("option", ["-o", "--state"])
+    def test_no_page_over_an_input(self, option: str, folder: Path) -> None:
+        done = self.run(folder / "wheel.json", "-o", folder / "page.html", option, folder / "wheel.json")
         assert done.exit_code == 2
         assert rb.read_topology(folder / "wheel.json").n == 5
 
@@ -312,7 +370,7 @@ class TestBoundsInABrowser:
     @pytest.fixture
     def page(self, browser: Any, tmp_path: Path) -> Any:
         target = tmp_path / "report.html"
-        report_of(Survey(self.ROWS, ()), [], pictures=False).write(target)
+        report_of(Survey(self.ROWS, ()), {}).write(target)
         browser.get(target.as_uri())
         browser.find_element("css selector", ".filters summary").click()
         yield browser
@@ -336,6 +394,30 @@ class TestBoundsInABrowser:
     def test_a_collection_is_chosen(self, page: Any) -> None:
         page.find_element("css selector", "#group option:nth-child(2)").click()
         assert TestInABrowser.names(page) == ["a/exact", "a/interval"]
+
+    @pytest.mark.parametrize(("width", "medium"), [(1280, "screen"), (720, "print")])
+    def test_a_name_of_usual_length_is_not_cut_into_lines(
+        self, width: int, medium: str, browser: Any, tmp_path: Path
+    ) -> None:
+        counts = dict.fromkeys(THREAT_MODELS, 0)
+        row = Row("topohub:sndlib/pioro40", 40, 178, False, 1, 1, 6, 6, counts, counts, "refuted", seconds=5.1)
+        rows = [replace(row, links=17, links_at_least=3), Row("broken.json", error="no such file as this one " * 3)]
+        target = tmp_path / "wide.html"
+        picture = b"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 2 1'/>"
+        report_of(Survey(tuple(rows), tuple(THREAT_MODELS)), {row.network: Section(picture)}).write(target)
+        browser.execute_cdp_cmd(
+            "Emulation.setDeviceMetricsOverride",
+            {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False},
+        )
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": medium})
+        browser.get(target.as_uri())
+        lines = "return arguments[0].getClientRects().length"
+        link = browser.find_element("css selector", "td.name a")
+        told = link.text, browser.execute_script(lines, link), browser.find_element("css selector", "main").text
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+        assert told[:2] == (row.network, 1)
+        assert "3..5 when 5 were found" in told[2]
 
     def test_seconds_that_nobody_kept_have_no_column(self, page: Any) -> None:
         heads = [each.text for each in page.find_elements("css selector", "th")]

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any
 
 from robustness.digraph import GraphLike
 from robustness.errors import InvalidParameter
 from robustness.figures.saving import new_figure
+from robustness.files import ReadingOptions
 from robustness.files.writing import replace_file
-from robustness.mending import MendResult
 from robustness.reporting import page
-from robustness.reporting.section import section_of
+from robustness.reporting.section import Section, section_of
 from robustness.spelled import counted
 from robustness.surveying import Gate, Row, Survey, survey
-from robustness.surveying.mended import mended_for, seconds_for_mending
 from robustness.surveying.row import Findings
 from robustness.told import Told
 
@@ -71,8 +70,10 @@ def report(
     total_time_limit: float | None = None,
     jobs: int = 1,
     seed: int = 0,
+    state: str | os.PathLike[str] | None = None,
     certificates: str | os.PathLike[str] | None = None,
     on_row: Callable[[Row, int, int], None] | None = None,
+    reading: ReadingOptions | None = None,
 ) -> Report:
     """Return one self-contained HTML page about many networks: verdicts in words, a table to sort, and one part each.
 
@@ -81,8 +82,10 @@ def report(
 
     Parameters
     ----------
-    graphs, models, gate, time_limit, total_time_limit, jobs, seed, certificates, on_row
+    graphs, models, gate, time_limit, total_time_limit, jobs, seed, certificates, on_row, reading
         As for :func:`robustness.survey`.
+    state : path, optional
+        A journal, as for :func:`robustness.survey`, which keeps pictures, attacks and links as well as rows.
     title : str
         The heading of the page.
     pictures : bool
@@ -111,8 +114,8 @@ def report(
     >>> made.survey.rows[0].r, "survives 1 malicious node" in made.html
     (2, True)
     """
-    kept = Kept(gate or Gate(), mending)
     require_drawing(pictures)
+    kept = Kept(pictures)
     found = survey(
         graphs,
         models=models,
@@ -121,21 +124,19 @@ def report(
         total_time_limit=total_time_limit,
         jobs=jobs,
         seed=seed,
+        mending=mending,
+        state=state,
         certificates=certificates,
         on_row=on_row,
         on_findings=kept.add,
+        on_kept=kept.take,
+        reading=reading,
     )
-    return report_of(found, kept.findings, kept.proposals, title=title, gate=gate, pictures=pictures)
+    return report_of(found, kept.sections, title=title, gate=gate)
 
 
 def report_of(
-    found: Survey,
-    findings: Iterable[Findings],
-    proposals: Mapping[str, MendResult] = MappingProxyType({}),
-    *,
-    title: str = "Robustness report",
-    gate: Gate | None = None,
-    pictures: bool = True,
+    found: Survey, sections: Mapping[str, Section], *, title: str = "Robustness report", gate: Gate | None = None
 ) -> Report:
     """Return the page about a survey that is there already.
 
@@ -143,45 +144,44 @@ def report_of(
     ----------
     found : Survey
         Its rows are shown.
-    findings : iterable of Findings
-        What ``survey(..., on_findings=...)`` handed out. A row without findings is shown without a picture.
-    proposals : mapping from name to MendResult
-        The links to propose.
-    title, gate, pictures
+    sections : mapping from name to Section
+        What is shown beside them. A row without a section is shown by its facts alone.
+    title, gate
         As for :func:`report`.
     """
     if not isinstance(title, str):
         raise InvalidParameter(f"title is text, not {title!r}")
-    require_drawing(pictures)
-    sections = {
-        each.row.network: section_of(each, with_pictures=pictures, mended=proposals.get(each.row.network))
-        for each in findings
-    }
     return Report(found, page.html(title, found, gate or Gate(), sections))
 
 
 class Kept:
-    """What a page needs of each network beside its row, collected while the survey runs.
+    """What a page shows of each network beside its row, collected while the survey runs.
 
     Parameters
     ----------
-    gate : Gate
-    seconds : float
-        For the links to propose for one network; 0: none.
+    pictures : bool
+        Whether networks are drawn and attacks are played.
     """
 
-    def __init__(self, gate: Gate, seconds: float) -> None:
-        self.findings: list[Findings] = []
-        self.proposals: dict[str, MendResult] = {}
-        self._gate, self._seconds = gate, seconds_for_mending(seconds)
+    def __init__(self, pictures: bool) -> None:
+        self.sections: dict[str, Section] = {}
+        self._pictures = pictures
+        self._drawing = threading.Lock()  # matplotlib draws one picture at a time
 
-    def add(self, findings: Findings) -> None:
-        """Keep what was found out about one network, and look for links that mend it."""
-        if self._seconds:
-            found = mended_for(findings.graph, findings.row, self._gate, self._seconds)
-            if found is not None:
-                self.proposals[findings.row.network] = found
-        self.findings.append(findings)
+    def add(self, findings: Findings) -> dict[str, Any]:
+        """Keep what is shown of one network, and return it for a journal."""
+        with self._drawing:
+            section = section_of(findings, with_pictures=self._pictures)
+        self.sections[findings.row.network] = section
+        return section.as_dict()
+
+    def take(self, row: Row, shown: Any) -> bool:
+        """Keep what a journal holds of one network; False where that is no part of a page, or one without pictures."""
+        if shown is None or (self._pictures and not shown["with_pictures"]):
+            return False
+        section = Section.of_dict(shown)
+        self.sections[row.network] = section if self._pictures else section.without_pictures()
+        return True
 
 
 def require_drawing(pictures: bool) -> None:

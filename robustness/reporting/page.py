@@ -60,10 +60,21 @@ _FOOT = (
 )
 
 
-_KEY = (
-    "<p class='faint'>Under each threat model stands the largest f that is survived: 0 when agreement needs everybody "
-    "to be honest, -1 when that does not suffice, 0..2 when 0 is proven, 3 refuted, and the rest was not decided.</p>"
-)
+def _key(head: Sequence[str], models: Sequence[str]) -> str:
+    """Return what the columns mean that do not say it themselves."""
+    told = []
+    if models:
+        told.append(
+            "Under each threat model stands the largest f that is survived: 0 when agreement needs everybody to be "
+            "honest, -1 when that does not suffice, 0..2 when 0 is proven, 3 refuted, and the rest was not decided."
+        )
+    if "links" in head:
+        wish = "what is required of it" if "gate" in head else "one more r"
+        told.append(
+            f"Under links stands how many further links give a network {wish}: 3..5 when 5 were found, and fewer than "
+            "3 are proven not to do."
+        )
+    return f"<p class='faint'>{' '.join(told)}</p>" if told else ""
 
 
 def _standing_of(survey: Survey, gate: Gate) -> str:
@@ -80,7 +91,7 @@ def _table(survey: Survey, sections: Mapping[str, Section]) -> str:
     head, *body = _kept(cells(survey.rows, survey.models), survey)
     has_gate = "gate" in head
     has_pictures = any(section.picture for section in sections.values())
-    names = "".join(_head(name) for name in head) + ("<th>picture</th>" if has_pictures else "")
+    names = "".join(_head(name) for name in head) + ("<th class='thumbs'>picture</th>" if has_pictures else "")
     lines = "".join(
         _line(k, row, line, head, sections.get(row.network, Section()), has_pictures)
         for k, (row, line) in enumerate(zip(survey.rows, body, strict=True))
@@ -92,7 +103,7 @@ def _table(survey: Survey, sections: Mapping[str, Section]) -> str:
         f"{_filters(head, [row.network for row in survey.rows])}"
         "<div class='scroll' tabindex='0' role='region' aria-label='networks'>"
         f"<table class='networks'><thead><tr>{names}</tr></thead><tbody>{lines}</tbody></table></div>"
-        + (_KEY if survey.models else "")
+        + _key(head, survey.models)
     )
 
 
@@ -159,7 +170,7 @@ def _line(k: int, row: Row, line: Sequence[str], head: Sequence[str], section: S
             shown.append(f"<td{_class(name)}{_values(cell)}>{escape(told)}</td>")
     if has_pictures:
         image = f"<img class='thumb' alt='' src='{as_data_address(section.picture)}'>" if section.picture else ""
-        shown.append(f"<td>{image}</td>")
+        shown.append(f"<td class='thumbs'>{image}</td>")
     group = f" data-group='{escape(_group(row.network), quote=True)}'"
     return f"<tr data-gate='{escape(row.gate, quote=True)}'{group} data-part='n{k}'>{''.join(shown)}</tr>"
 

@@ -6,15 +6,14 @@ import io
 import warnings
 from base64 import b64encode
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from robustness.digraph import Digraph
 from robustness.figures.network import draw
 from robustness.figures.saving import new_figure
-from robustness.mending import MendResult
 from robustness.natural_order import in_natural_order
 from robustness.reporting.proposal import in_sentences
 from robustness.simulation.attacks import Attack
@@ -69,6 +68,8 @@ class Section:
         What links would mend it, a sentence and the links; empty when nothing is proposed.
     certificate_digest : str
         SHA-256 of the certificate's file, empty when none was written.
+    with_pictures : bool
+        Whether a picture and an attack were asked for.
     """
 
     picture: bytes = b""
@@ -77,9 +78,32 @@ class Section:
     film: Film | None = None
     certificate_digest: str = field(default="")
     mending: tuple[str, ...] = ()
+    with_pictures: bool = False
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return everything as JSON-ready values."""
+        return asdict(self) | {"picture": self.picture.decode()}
+
+    @classmethod
+    def of_dict(cls, content: Mapping[str, Any]) -> Self:
+        """Return the section that :meth:`as_dict` wrote."""
+        film = content["film"]
+        return cls(
+            content["picture"].encode(),
+            tuple((name, where, survived, refuted) for name, where, survived, refuted in content["models"]),
+            tuple(content["told"]),
+            None if film is None else Film(film["story"], film["claim"], tuple(film["lines"])),
+            content["certificate_digest"],
+            tuple(content["mending"]),
+            content["with_pictures"],
+        )
+
+    def without_pictures(self) -> Section:
+        """Return the section as it is where neither pictures nor attacks are asked for."""
+        return replace(self, picture=b"", film=None, with_pictures=False)
 
 
-def section_of(findings: Findings, *, with_pictures: bool, mended: MendResult | None = None) -> Section:
+def section_of(findings: Findings, *, with_pictures: bool) -> Section:
     """Return what is shown of a network.
 
     Parameters
@@ -88,20 +112,19 @@ def section_of(findings: Findings, *, with_pictures: bool, mended: MendResult | 
         What its row was made from.
     with_pictures : bool
         Whether it is drawn, and an attack played, when it has at most 80 nodes.
-    mended : MendResult, optional
-        The links to propose.
     """
     row, graph = findings.row, findings.graph
     digest = sha256(Path(row.certificate).read_bytes()).hexdigest() if row.certificate else ""
-    mending = () if mended is None else tuple(in_sentences(mended))
+    mending = () if findings.mended is None else tuple(in_sentences(findings.mended))
     models = tuple(
         (result.model, result.threat.where, "any" if graph.n < 2 else number(result.guaranteed), number(result.refuted))
         for result in findings.table.results
     )
     told = tuple(sentences_of(findings.table)) if models else ()
+    section = Section(b"", models, told, None, digest, mending, with_pictures)
     if not with_pictures or not 1 <= graph.n <= _LARGEST:
-        return Section(models=models, told=told, certificate_digest=digest, mending=mending)
-    return Section(_picture(graph, row.weakest), models, told, _film(findings.table), digest, mending)
+        return section
+    return replace(section, picture=_picture(graph, row.weakest), film=_film(findings.table))
 
 
 def _size(nodes: int) -> tuple[float, float]:

@@ -126,7 +126,8 @@ def survey(
     state: str | os.PathLike[str] | None = None,
     certificates: str | os.PathLike[str] | None = None,
     on_row: Callable[[Row, int, int], None] | None = None,
-    on_findings: Callable[[Findings], None] | None = None,
+    on_findings: Callable[[Findings], Any] | None = None,
+    on_kept: Callable[[Row, Any], bool] | None = None,
     reading: ReadingOptions | None = None,
     executor: Any = None,
 ) -> Survey:
@@ -159,7 +160,10 @@ def survey(
         Called with each finished row, how many are finished, and how many there are.
     on_findings : callable, optional
         Called with each row and the answers it was made from, in the thread that found them; not for rows of errors,
-        nor for those that a journal holds.
+        nor for those that a journal holds. What it returns, JSON-ready, is kept beside the row in the journal.
+    on_kept : callable, optional
+        Called with each row that the journal holds and what ``on_findings`` returned for it (None when it did not run).
+        Whether that will do; otherwise the network is asked about anew.
     reading : ReadingOptions, optional
         How files are to be read, as for :func:`robustness.read_topology`.
     executor : concurrent.futures.Executor, distributed.Client or robustness.cubes.CubeExecutor, optional
@@ -198,8 +202,9 @@ def survey(
         folder.mkdir(parents=True, exist_ok=True)
     with Journal(None if state is None else Path(state)) as journal:
 
-        def row_of(name: str, graph: Any, left: float | None) -> tuple[str | None, Row]:
-            return _row(name, graph, _within(question, left), question, journal, folder, on_findings, reading, executor)
+        def row_of(name: str, graph: Any, left: float | None) -> tuple[str | None, Row, Any]:
+            asked = _within(question, left)
+            return _row(name, graph, asked, question, journal, folder, on_findings, on_kept, reading, executor)
 
         rows = _run(networks, row_of, journal, jobs, total_time_limit, on_row)
     missing = tuple(name for (name, _), row in zip(networks, rows, strict=True) if row is None)
@@ -236,7 +241,7 @@ def _named(graphs: Iterable[Any] | Mapping[str, GraphLike]) -> tuple[list[tuple[
 
 def _run(
     networks: list[tuple[str, Any]],
-    row_of: Callable[[str, Any, float | None], tuple[str | None, Row]],
+    row_of: Callable[[str, Any, float | None], tuple[str | None, Row, Any]],
     journal: Journal,
     jobs: int,
     total: float | None,
@@ -247,7 +252,7 @@ def _run(
     finished = 0
     pool = ThreadPoolExecutor(jobs, thread_name_prefix="survey")
     try:
-        waiting: dict[Future[tuple[str | None, Row]], int] = {}
+        waiting: dict[Future[tuple[str | None, Row, Any]], int] = {}
         pending = iter(enumerate(networks))
         while True:
             while len(waiting) < jobs and (item := next(pending, None)) is not None:
@@ -259,14 +264,14 @@ def _run(
             if not waiting:
                 return rows
             for future in wait(waiting, return_when=FIRST_COMPLETED).done:
-                key, row = future.result()
+                key, row, shown = future.result()
                 rows[waiting.pop(future)] = row
                 finished += 1
                 # In this order: whoever finds a row in the journal can rely on its having been told.
                 if on_row is not None:
                     on_row(row, finished, len(networks))
                 if key is not None:
-                    journal.add(key, row)
+                    journal.add(key, row, shown)
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
 
@@ -286,27 +291,28 @@ def _row(
     asked: Question,
     journal: Journal,
     folder: Path | None,
-    on_findings: Callable[[Findings], None] | None,
+    on_findings: Callable[[Findings], Any] | None,
+    on_kept: Callable[[Row, Any], bool] | None,
     reading: ReadingOptions | None,
     executor: Any,
-) -> tuple[str | None, Row]:
-    """Return the row of one network, and its key in the journal when it is to be remembered."""
+) -> tuple[str | None, Row, Any]:
+    """Return the row of one network, its key in the journal when it is to be remembered, and what goes with it."""
     try:
         is_source = isinstance(graph, str | os.PathLike)
         read: Digraph = read_with(graph, reading or ReadingOptions()) if is_source else as_digraph(graph)
     except (RobustnessError, OSError) as problem:
-        return None, unreadable(name, problem, question.gate)
+        return None, unreadable(name, problem, question.gate), None
     key = key_of(name, read, asked)
-    known = journal.get(key)
-    if known is not None and (folder is None or not known.certificate or Path(known.certificate).is_file()):
-        return None, known
+    known, kept = journal.get(key)
+    has_files = known is None or folder is None or not known.certificate or Path(known.certificate).is_file()
+    if known is not None and has_files and (on_kept is None or on_kept(known, kept)):
+        return None, known, None
     found = measure(name, read, question, folder, executor)
     if isinstance(found, Findings) and question.mending:
         found = with_links(found, question.gate, question.mending, question.seed)
     row = found.row if isinstance(found, Findings) else found
-    if isinstance(found, Findings) and on_findings is not None:
-        on_findings(found)
+    shown = on_findings(found) if isinstance(found, Findings) and on_findings is not None else None
     # A row that the limit for the whole cut short is not what a run with more time would say.
     is_mended = not asked.mending or (row.links is not None and row.links == row.links_at_least)
     was_cut = question != asked and not (row.is_decided and is_mended)
-    return None if row.error or was_cut else key, row
+    return None if row.error or was_cut else key, row, shown

@@ -50,7 +50,7 @@ def _goals(row: Row, gate: Gate) -> list[Goal]:
 
 
 def with_links(findings: Findings, gate: Gate, seconds: float, seed: int = 0) -> Findings:
-    """Return the findings with how many further links the network needs in the row."""
+    """Return the findings with the links that the network lacks, and how many they are in the row."""
     row = findings.row
     if row.gate == "passed":
         return replace(findings, row=replace(row, links=0, links_at_least=0))
@@ -60,7 +60,7 @@ def with_links(findings: Findings, gate: Gate, seconds: float, seed: int = 0) ->
     if found is not None and found.verdict is not MendVerdict.IMPOSSIBLE:
         links = None if found.cost is None else len(found.links)
         row = replace(row, links=links, links_at_least=math.ceil(found.lower_bound))
-    return replace(findings, row=row)
+    return replace(findings, row=row, mended=found)
 
 
 def seconds_for_mending(seconds: float) -> float:

@@ -12,6 +12,7 @@ from robustness.decision.front import check_rs_robustness, determine_robustness
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter, RobustnessError
 from robustness.limits import Limits
+from robustness.mending import MendResult
 from robustness.results import Bounds, RobustnessResult, Verdict
 from robustness.threat_models import THREAT_MODELS, ToleranceTable, tolerance
 
@@ -172,12 +173,13 @@ def unreadable(name: str, problem: Exception, gate: Gate) -> Row:
 
 @dataclass(frozen=True, slots=True)
 class Findings:
-    """A row and the answers it was made from."""
+    """A row and the answers it was made from; the links that mend the network where they were asked for."""
 
     row: Row
     graph: Digraph
     robustness: RobustnessResult
     table: ToleranceTable
+    mended: MendResult | None = None
 
 
 def measure(

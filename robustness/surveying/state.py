@@ -1,9 +1,10 @@
 """The journal of a survey: finished rows, one checksummed line each, so that a killed run loses only the row in hand.
 
-A line is 16 hexadecimal digits of the SHA-256 of what follows, a blank, and a JSON object ``{"key": ..., "row": ...}``.
-The key is the SHA-256 of the network's name, its canonical graph and the question, so a changed file, another gate or
-another limit is asked anew. A last line that was cut off is what a kill leaves behind, and is dropped; a damaged line
-before it is not, and is refused.
+A line is 16 hexadecimal digits of the SHA-256 of what follows, a blank, and a JSON object ``{"key": ..., "row": ...}``,
+and for a page ``"shown"``, what it shows beside the row. Of two lines with one key the later holds. The key is the
+SHA-256 of the network's name, its canonical graph and the question, so a changed file, another gate or another limit is
+asked anew. A last line that was cut off is what a kill leaves behind, and is dropped; a damaged line before it is not,
+and is refused.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import os
 import re
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Self
+from typing import IO, Any, Self
 
 from robustness.digraph import Digraph
 from robustness.errors import UnreadableTopology
@@ -52,7 +53,7 @@ class Journal:
     """
 
     def __init__(self, path: Path | None) -> None:
-        self._rows: dict[str, Row] = {}
+        self._rows: dict[str, tuple[Row, Any]] = {}
         self._stream: IO[bytes] | None = None
         if path is None:
             return
@@ -68,16 +69,16 @@ class Journal:
         if self._stream is not None:
             self._stream.close()
 
-    def get(self, key: str) -> Row | None:
-        """Return the row of an earlier run."""
-        return self._rows.get(key)
+    def get(self, key: str) -> tuple[Row | None, Any]:
+        """Return the row of an earlier run, and what was to be shown beside it; None for what is not there."""
+        return self._rows.get(key, (None, None))
 
-    def add(self, key: str, row: Row) -> None:
-        """Remember a finished row; it is on the disk when this returns."""
-        self._rows[key] = row
+    def add(self, key: str, row: Row, shown: Any = None) -> None:
+        """Remember a finished row, and JSON-ready values beside it; they are on the disk when this returns."""
         if self._stream is None:
             return
-        text = json.dumps({"key": key, "row": row.as_dict()}, allow_nan=False).encode()
+        content = {"key": key, "row": row.as_dict()} | ({} if shown is None else {"shown": shown})
+        text = json.dumps(content, allow_nan=False).encode()
         self._stream.write(_checksum(text) + b" " + text + b"\n")
         self._stream.flush()
         os.fsync(self._stream.fileno())
@@ -98,7 +99,7 @@ class Journal:
                 if checksum != _checksum(text):
                     raise ValueError("its checksum is wrong")
                 content = json.loads(text)
-                self._rows[content["key"]] = Row.of_dict(content["row"])
+                self._rows[content["key"]] = Row.of_dict(content["row"]), content.get("shown")
             except (ValueError, KeyError, TypeError) as problem:
                 if number == len(lines) and (number > 1 or _BEGINNING.fullmatch(line)):
                     break
