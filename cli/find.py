@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+import time
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -77,6 +79,7 @@ def command(
     """
     from robustness.graph_search import FindResult, FindVerdict, find_graph
 
+    started, latest = time.monotonic(), [FindResult(FindVerdict.UNDECIDED)]
     with ProgressLine(console) as line:
 
         def work() -> FindResult:
@@ -86,6 +89,7 @@ def command(
                 violates,
                 directed=directed,
                 minimise="edges" if fewest_edges else None,
+                on_result=latest.append,
                 **query.effort(line),
             )
 
@@ -95,8 +99,9 @@ def command(
         except (Overrun, KeyboardInterrupt) as stop:
             is_interrupted = isinstance(stop, KeyboardInterrupt)
             reason = "interrupted" if is_interrupted else "the time limit was reached"
-            stats = {"reason": f"{reason} ({line.note})" if line.note else reason}
-            result = FindResult(FindVerdict.UNDECIDED, stats=stats)
+            known = latest[-1]
+            stats = {**known.stats, "reason": f"{reason} ({line.note})" if line.note else reason}
+            result = replace(known, stats=stats, seconds=time.monotonic() - started)
     if output is not None and result.graph is not None:
         write_graph(result.graph, output)
     if query.as_json:
@@ -108,7 +113,10 @@ def command(
         FindVerdict.IMPOSSIBLE: ExitCode.REFUTED,
         FindVerdict.UNDECIDED: ExitCode.UNDECIDED,
     }
-    ctx.exit(ExitCode.INTERRUPTED if is_interrupted else codes[result.verdict])
+    if is_interrupted:
+        console.error("interrupted: what is printed holds, nothing else is claimed")
+        ctx.exit(ExitCode.INTERRUPTED)
+    ctx.exit(codes[result.verdict])
 
 
 def _document(result: FindResult) -> dict[str, Any]:
@@ -155,8 +163,12 @@ def _verdict_text(result: FindResult, nodes: range) -> str:
             reason = result.stats.get("reason", "a limit was reached")
             if result.graph is not None:
                 edges = counted(result.edges or 0, "edge")
-                known = f"a graph with {edges} fits, whether one with {result.edges_at_least} does is open"
-                return f"undecided: on {counted(result.n or 0, 'node')} {known} ({reason})"
+                fewer = f"one with {result.edges_at_least}" if result.edges_at_least else "one with fewer"
+                known = f"a graph with {edges} fits, whether {fewer} does is open"
+                return f"undecided: on {counted(result.n or 0, 'node')} {known} ({reason}){smaller}"
+            if result.edges_at_least:
+                needed = f"on {counted(result.n or 0, 'node')} at least {counted(result.edges_at_least, 'edge')} needed"
+                return f"undecided: {reason}; {needed}{smaller}"
             return f"undecided: {reason}{smaller}"
 
 

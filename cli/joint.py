@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,10 +26,12 @@ __all__ = ["SCHEMA", "command"]
 
 SCHEMA = "robustness/joint/1"
 
+_TIME_IS_UP = "the time limit was reached"
+
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """What the command found: the decision, the curve if asked for and not stopped by a limit, what to draw."""
+    """What the command found: the decision, what is known of the curve if asked for, what to draw."""
 
     sequence: TimeVaryingGraph
     result: JointResult
@@ -134,7 +136,7 @@ def command(
     require_different_files([source], [picture, certificate, canonical])
     sequence = load_sequence(source, period=period, step=step, both_ways=both_ways)
     with ProgressLine(console) as line:
-        survey = Survey(sequence, r, s, tau, Clock(query.timeout), query, line, [])
+        survey = Survey(sequence, r, s, tau, Clock(query.timeout), query, line)
         is_interrupted = False
         drawn = picture is not None
         try:
@@ -146,13 +148,15 @@ def command(
             )
         except (Overrun, KeyboardInterrupt) as stop:
             is_interrupted = isinstance(stop, KeyboardInterrupt)
-            report = survey.stopped(window, "interrupted" if is_interrupted else "the time limit was reached")
+            report = survey.stopped(window, "interrupted" if is_interrupted else _TIME_IS_UP)
     written = _write(report, certificate, canonical)
     if query.as_json:
         asked = {} if certificate is canonical is None else {"files": written}
         console.document(SCHEMA, report.document() | asked)
     else:
-        lines = _lines(report, source, with_curve=with_curve or picture is not None, whole=console.is_verbose)
+        why = "interrupted" if is_interrupted else _TIME_IS_UP
+        no_curve = why if with_curve or picture is not None else ""
+        lines = _lines(report, source, no_curve=no_curve, whole=console.is_verbose)
         console.answer(lines)
     if picture is not None:
         from robustness.figures.joint import draw_joint
@@ -173,7 +177,12 @@ class Clock:
     """How much of the time limit is left for the next part of the command."""
 
     def __init__(self, timeout: float | None) -> None:
-        self._deadline = None if timeout is None else time.monotonic() + timeout
+        self._started = time.monotonic()
+        self._deadline = None if timeout is None else self._started + timeout
+
+    def spent(self) -> float:
+        """Return the seconds since the command began to search."""
+        return time.monotonic() - self._started
 
     def left(self) -> float | None:
         """Return the seconds left: when there are none a moment, in which nothing is searched."""
@@ -191,7 +200,9 @@ class Survey:
     clock: Clock
     query: Query
     line: ProgressLine
-    finished: list[JointResult]
+    finished: list[JointResult] = field(default_factory=list)
+    known: list[JointResult] = field(default_factory=list)
+    curves: list[Mapping[int, int | None]] = field(default_factory=list)
 
     def report(
         self, window: int | None, all_windows: bool, with_curve: bool, drawn: bool, *, certified: bool = False
@@ -207,14 +218,17 @@ class Survey:
         return replace(report, certificate=self._certificate(result)) if certified else report
 
     def stopped(self, window: int | None, reason: str) -> Report:
-        """Return the answer where it was finished, without what goes with it, or that nothing is known."""
+        """Return the answer where it was finished, and else what was proven by then."""
         from robustness.results import Verdict
         from robustness.time_varying import JointResult
 
         if self.finished:
-            return Report(self.sequence, self.finished[0], None, self.finished[0])
+            return Report(self.sequence, self.finished[0], self._known_curve(), self.finished[0])
         result = JointResult(Verdict.UNDECIDED, self.r, self.s, asked_window=window, tau=self.tau, reason=reason)
-        return Report(self.sequence, result, None, result)
+        if self.known:
+            result = self.known[-1]
+            result = replace(result, reason=reason) if result.verdict is Verdict.UNDECIDED else result
+        return Report(self.sequence, replace(result, seconds=self.clock.spent()), None, result)
 
     def _decide(self, window: int | None, all_windows: bool) -> JointResult:
         from robustness.time_varying import check_joint_robustness
@@ -227,18 +241,23 @@ class Survey:
             tau=self.tau,
             all_windows=all_windows,
             algorithm=self.query.algorithm,
+            on_result=self.known.append,
             **self._effort(),
         )
 
     def _curve(self) -> Mapping[int, int | None] | None:
-        """Return the smallest window for every r, or None when the limit stopped it: a part would be a guess."""
+        """Return the smallest window for every r, or up to the r at which the limit stopped it."""
         from robustness.errors import Undecided
         from robustness.time_varying import joint_curve
 
         try:
-            return joint_curve(self.sequence, self.s, algorithm=self.query.algorithm, **self._effort())
+            effort = self._effort() | {"on_curve": self.curves.append}
+            return joint_curve(self.sequence, self.s, algorithm=self.query.algorithm, **effort)
         except Undecided:
-            return None
+            return self._known_curve()
+
+    def _known_curve(self) -> Mapping[int, int | None] | None:
+        return self.curves[-1] if self.curves else None
 
     def _certificate(self, result: JointResult) -> bytes | None:
         from robustness.time_varying.certification import joint_certificate
@@ -272,7 +291,9 @@ def _violation_document(found: Violation | None) -> dict[str, Any] | None:
     return {"start": found.start, "length": found.length, "witness": witness}
 
 
-def _lines(report: Report, source: str, *, with_curve: bool, whole: bool) -> Iterator[str]:
+def _lines(report: Report, source: str, *, no_curve: str, whole: bool) -> Iterator[str]:
+    from robustness.definitions import largest_conceivable_r
+
     sequence, result = report.sequence, report.result
     yield _headline(result)
     if result.violation is not None:
@@ -288,8 +309,8 @@ def _lines(report: Report, source: str, *, with_curve: bool, whole: bool) -> Ite
         yield f"windows    {result.stats['windows']} settled by {rules or 'none'}; {searches}"
     if report.curve is not None:
         yield from _curve_table(report.curve)
-    elif with_curve:
-        yield "curve      not known: the time limit was reached"
+    if no_curve and len(report.curve or ()) < largest_conceivable_r(sequence.n):
+        yield f"curve      not known{f' from r = {max(report.curve) + 1} on' if report.curve else ''}: {no_curve}"
     yield f"time       {result.seconds:.3f} s"
 
 

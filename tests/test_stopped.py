@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -88,3 +89,21 @@ def test_ctrl_c_keeps_what_is_proven(command: str, tmp_path: Path) -> None:
     assert code == 130
     assert "nothing else is claimed" in err
     assert out
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("command", "kept"),
+    [
+        ("find -n 4..14 -p 5-robust -p max-degree<=6 --fewest-edges", "none on 4"),
+        ("joint {sequence} -r 14", "fewer than"),
+    ],
+)
+def test_ctrl_c_tells_what_was_proven_on_the_way(command: str, kept: str, tmp_path: Path) -> None:
+    path = tmp_path / "sequence.json"
+    steps = [[list(arc) for arc in nx.gnp_random_graph(60, 0.12, seed=k, directed=True).edges] for k in range(8)]
+    path.write_text(json.dumps({"nodes": list(range(60)), "period": 8, "steps": steps}))
+    code, out, err = interrupted(*command.format(sequence=path).split(), after=str(tmp_path / "started"))
+    assert code == 130
+    assert "nothing else is claimed" in err
+    assert kept in out

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from robustness.cubes.executors import require_executor
 from robustness.digraph import Digraph
@@ -24,14 +24,11 @@ from robustness.graph_search.properties import (
     parse_property,
 )
 from robustness.graph_search.results import FindResult, FindVerdict
-from robustness.graph_search.synthesis import synthesise
+from robustness.graph_search.synthesis import Synthesis, synthesise
 from robustness.limits import Limits, Progress
 from robustness.spelled import counted
 from robustness.traps.smallest import smallest_trap
 from robustness.whole_numbers import taking_numpy_integers
-
-if TYPE_CHECKING:
-    pass
 
 __all__ = ["METHODS", "find_graph"]
 
@@ -66,6 +63,7 @@ def find_graph(
     progress: Callable[[Progress], None] | None = None,
     symmetry_breaking: bool = True,
     executor: Any = None,
+    on_result: Callable[[FindResult], None] | None = None,
 ) -> FindResult:
     """Search for a graph that has all properties in ``satisfies`` and none of those in ``violates``.
 
@@ -92,6 +90,9 @@ def find_graph(
         Whether CP-SAT may number the nodes by role or degree; it changes the time, never the verdict.
     executor : concurrent.futures.Executor, distributed.Client or CubeExecutor, optional
         Where the exact searches for violating pairs of what is proposed are solved, by cubes.
+    on_result : callable, optional
+        Called with an UNDECIDED result whenever more is proven: that no graph of a size fits, or that fewer edges do
+        not, or a graph that fits.
 
     Returns
     -------
@@ -119,19 +120,26 @@ def find_graph(
     limits = Limits.of(time_limit, jobs, seed, progress).spread_over(executor)
     search = _search(satisfies, violates, directed, minimise, limits, method, symmetry_breaking)
     impossible: list[int] = []
+
+    def whole(result: FindResult) -> FindResult:
+        return replace(result, impossible_for=tuple(impossible), seconds=time.monotonic() - started)
+
+    def tell(known: FindResult) -> None:
+        if on_result is not None:
+            on_result(whole(known))
+
     result = FindResult(FindVerdict.IMPOSSIBLE)
     for size in sizes:
-        result = _find_on(size, search)
+        result = _find_on(size, search, tell)
         if result.verdict is not FindVerdict.IMPOSSIBLE:
             break
         impossible.append(size)
-    from dataclasses import replace
+        tell(FindResult(FindVerdict.UNDECIDED, method=result.method))
+    return whole(result)
 
-    return replace(result, impossible_for=tuple(impossible), seconds=time.monotonic() - started)
 
-
-def _find_on(n: int, search: _Search) -> FindResult:
-    """Return the answer for one number of nodes."""
+def _find_on(n: int, search: _Search, tell: Callable[[FindResult], None]) -> FindResult:
+    """Return the answer for one number of nodes; ``tell`` hears what is known before."""
     listed = can_enumerate(n, directed=search.directed)
     if search.method == "enumeration" and not listed:
         raise InvalidParameter(
@@ -143,10 +151,10 @@ def _find_on(n: int, search: _Search) -> FindResult:
         except Undecided as limit:
             return FindResult(FindVerdict.UNDECIDED, n=n, method="enumeration", stats={"reason": str(limit)})
         return _answer(graph, n, search, "enumeration", fewest=True)
-    return _synthesise_on(n, search)
+    return _synthesise_on(n, search, tell)
 
 
-def _synthesise_on(n: int, search: _Search) -> FindResult:
+def _synthesise_on(n: int, search: _Search, tell: Callable[[FindResult], None]) -> FindResult:
     found = synthesise(
         n,
         search.satisfies,
@@ -155,10 +163,11 @@ def _synthesise_on(n: int, search: _Search) -> FindResult:
         minimise=search.minimise,
         limits=search.limits,
         symmetry_breaking=search.symmetry_breaking,
+        on_known=lambda known: tell(_known(n, search, known)),
     )
     stats = MappingProxyType(found.stats)
     if not found.is_complete and found.graph is None:
-        return FindResult(FindVerdict.UNDECIDED, n=n, edges_at_least=found.edges_at_least, method="cp-sat", stats=stats)
+        return _known(n, search, found)
     fewest = search.minimise and found.is_complete
     return _answer(
         found.graph,
@@ -170,6 +179,14 @@ def _synthesise_on(n: int, search: _Search) -> FindResult:
         stats=stats,
         decided=found.is_complete,
     )
+
+
+def _known(n: int, search: _Search, found: Synthesis) -> FindResult:
+    """Return what the search on n nodes knows before it is over."""
+    stats, at_least = MappingProxyType(dict(found.stats)), found.edges_at_least
+    if found.graph is None:
+        return FindResult(FindVerdict.UNDECIDED, n=n, edges_at_least=at_least, method="cp-sat", stats=stats)
+    return _answer(found.graph, n, search, "cp-sat", fewest=False, at_least=at_least, stats=stats, decided=False)
 
 
 def _answer(

@@ -78,7 +78,18 @@ class FindResult(Shown):
             return f"found: {counted(self.n or 0, 'node')}, {counted(self.edges or 0, 'edge')}{fewest}" + (
                 f"; {none}" if none else ""
             )
-        return f"{self.verdict.value}: {none or 'a limit was reached'}"
+        known = [each for each in (self._open_edges(), none) if each]
+        return f"{self.verdict.value}: {'; '.join(known) or 'a limit was reached'}"
+
+    def _open_edges(self) -> str:
+        """Return what is known of the fewest edges when it is not known which they are."""
+        if self.verdict is not FindVerdict.UNDECIDED:
+            return ""
+        at_least = f"at least {counted(self.edges_at_least, 'edge')} needed" if self.edges_at_least else ""
+        if self.graph is None:
+            return at_least and f"on {counted(self.n or 0, 'node')} {at_least}"
+        fits = f"a graph on {counted(self.n or 0, 'node')} with {counted(self.edges or 0, 'edge')} fits"
+        return f"{fits}, {at_least}" if at_least else f"{fits}; whether one with fewer does is open"
 
     def evidence(self) -> list[tuple[str, str]]:
         """Return what the answer rests on, as rows of a name and a text."""

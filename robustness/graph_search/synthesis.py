@@ -10,7 +10,7 @@ CP-SAT proposes.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -59,22 +59,24 @@ def synthesise(
     minimise: bool = False,
     limits: Limits = UNBOUNDED,
     symmetry_breaking: bool = True,
+    on_known: Callable[[Synthesis], None] = lambda known: None,
 ) -> Synthesis:
     """Search for a graph on n >= 2 nodes; with ``minimise``, for one with the fewest edges.
 
     First any graph is looked for, then one with fewer edges, until none is left: so a limit leaves a graph that fits,
-    and ``edges_at_least`` below it.
+    and ``edges_at_least`` below it. ``on_known`` is called whenever one of the two is new.
     """
     model = GraphModel(n, directed=directed, symmetry_breaking=symmetry_breaking)
     model.demand(satisfies, violates)
     found = Synthesis()
     try:
-        found.graph = _propose_until_it_fits(model, satisfies, violates, found, limits)
+        found.graph = _propose_until_it_fits(model, satisfies, violates, found, limits, on_known)
         if found.graph is not None and minimise:
+            on_known(found)
             model.model.minimize(model.edge_count())
             # The optimum of every relaxation is a lower bound, so the first proposal that fits is a graph with
             # fewest edges.
-            found.graph = _propose_until_it_fits(model, satisfies, violates, found, limits)
+            found.graph = _propose_until_it_fits(model, satisfies, violates, found, limits, on_known)
             if found.graph is None:
                 raise InternalError("a graph that fits was lost while its edges were minimised: please report")
         found.is_complete = True
@@ -89,6 +91,7 @@ def _propose_until_it_fits(
     violates: Sequence[Property],
     found: Synthesis,
     limits: Limits,
+    on_known: Callable[[Synthesis], None],
 ) -> Digraph | None:
     """Return a graph that fits (with an objective: an optimal one), or None when there is none."""
     while True:
@@ -96,15 +99,17 @@ def _propose_until_it_fits(
         if outcome.is_infeasible:
             return None
         if model.model.has_objective() and outcome.bound > 0:
-            found.edges_at_least = max(found.edges_at_least, math.ceil(outcome.bound - 1e-6))
+            at_least = math.ceil(outcome.bound - 1e-6)
+            if at_least > found.edges_at_least:
+                found.edges_at_least = at_least
+                on_known(found)
         if not outcome.has_solution:
             raise Undecided("the time limit was reached")
         proposal = model.candidate(outcome.solver)
         found.stats["proposals"] += 1
         if limits.progress is not None:
-            limits.progress(
-                Progress(found.stats["proposals"], f"{counted(found.stats['constraints'], 'constraint')} learnt")
-            )
+            learnt_so_far = f"{counted(model.n, 'node')}: {counted(found.stats['constraints'], 'constraint')} learnt"
+            limits.progress(Progress(found.stats["proposals"], learnt_so_far))
         learnt = _learn(model, proposal, satisfies, violates, limits)
         found.stats["constraints"] += learnt
         if not learnt:

@@ -39,6 +39,10 @@ __all__ = ["check_joint_robustness", "joint_curve"]
 
 _PROGRESS_SECONDS = 0.2
 
+#: Of results that are told before the end.
+_GOES_ON = "the search goes on"
+_NOT_ALL = "not all windows after it were decided"
+
 
 @taking_numpy_integers
 def check_joint_robustness(
@@ -55,6 +59,7 @@ def check_joint_robustness(
     seed: int = 0,
     reuse: Collection[str] = RULES,
     progress: Callable[[Progress], None] | None = None,
+    on_result: Callable[[JointResult], None] | None = None,
 ) -> JointResult:
     """Decide whether a time-varying graph is jointly (r,s)-robust, over a given or the smallest number of steps.
 
@@ -82,6 +87,9 @@ def check_joint_robustness(
         one wants to measure what they save. The verdict does not depend on it.
     progress : callable, optional
         Called now and then with a :class:`~robustness.limits.Progress`.
+    on_result : callable, optional
+        Called whenever more is proven before the end: with an UNDECIDED result whose ``at_least`` has grown, or with
+        the first window that fails while the others are still being decided.
 
     Returns
     -------
@@ -122,7 +130,12 @@ def check_joint_robustness(
     require_algorithm(algorithm)
     _require_window(window, tau, reuse)
     limits = Limits.of(time_limit, jobs, seed, progress)
-    found = _check(sequence, r, s, limits, window, tau, all_windows, algorithm, frozenset(reuse))
+
+    def tell(known: JointResult) -> None:
+        if on_result is not None:
+            on_result(replace(known, seconds=time.monotonic() - started))
+
+    found = _check(sequence, r, s, limits, window, tau, all_windows, algorithm, frozenset(reuse), tell)
     return replace(found, seconds=time.monotonic() - started)
 
 
@@ -141,19 +154,17 @@ def _check(
     all_windows: bool,
     algorithm: str,
     reuse: frozenset[str],
+    tell: Callable[[JointResult], None] = lambda known: None,
 ) -> JointResult:
     decider = UnionDecider(sequence, r, s, algorithm, limits, reuse)
-    survey = _Survey(sequence, decider, limits.progress)
-    result = survey.smallest() if window is None else survey.given(window, all_windows)
-    return replace(
-        result,
-        asked_window=window,
-        tau=tau,
-        within_tau=_within(result, tau),
-        stats=MappingProxyType(
-            {"windows": decider.settled.total(), "searches": decider.searches, **dict(sorted(decider.settled.items()))}
-        ),
-    )
+
+    def whole(result: JointResult) -> JointResult:
+        counts = {"windows": decider.settled.total(), "searches": decider.searches}
+        stats = MappingProxyType({**counts, **dict(sorted(decider.settled.items()))})
+        return replace(result, asked_window=window, tau=tau, within_tau=_within(result, tau), stats=stats)
+
+    survey = _Survey(sequence, decider, limits.progress, lambda known: tell(whole(known)))
+    return whole(survey.smallest() if window is None else survey.given(window, all_windows))
 
 
 @taking_numpy_integers
@@ -166,10 +177,12 @@ def joint_curve(
     jobs: int = 1,
     seed: int = 0,
     progress: Callable[[Progress], None] | None = None,
+    on_curve: Callable[[Mapping[int, int | None]], None] | None = None,
 ) -> Mapping[int, int | None]:
     """Return for r = 1 .. ceil(n/2) the smallest l for which the sequence is jointly (r,s)-robust, or None.
 
     Takes the parameters of :func:`check_joint_robustness`; raises :class:`Undecided` when a limit stopped it.
+    ``on_curve`` is called with what is known of the curve after every r.
     (r,s)-robust graphs are (r-1,s)-robust, so the values grow with r, and each search starts where the last ended.
 
     See Also
@@ -192,6 +205,8 @@ def joint_curve(
             result = _Survey(sequence, decider, progress).smallest(smallest, map_windows=False)
             smallest = result.window if result.decided() else None
         curve[r] = smallest
+        if on_curve is not None:
+            on_curve(MappingProxyType(dict(curve)))
     return MappingProxyType(curve)
 
 
@@ -199,9 +214,13 @@ class _Survey:
     """One pass over the windows of a sequence: which union each start has, and the verdict on it."""
 
     def __init__(
-        self, sequence: TimeVaryingGraph, decider: UnionDecider, progress: Callable[[Progress], None] | None
+        self,
+        sequence: TimeVaryingGraph,
+        decider: UnionDecider,
+        progress: Callable[[Progress], None] | None,
+        tell: Callable[[JointResult], None] = lambda known: None,
     ) -> None:
-        self._sequence, self._decider, self._progress = sequence, decider, progress
+        self._sequence, self._decider, self._progress, self._tell = sequence, decider, progress, tell
         self._window = SlidingUnion(sequence)
         self._told = time.monotonic()
 
@@ -224,6 +243,8 @@ class _Survey:
                 unsure = undecided and f"a window before it was not decided ({undecided})"
                 if not all_windows:
                     break
+                known = {"reason": unsure or _NOT_ALL, **chart.fields(self._sequence, length)}
+                self._tell(self._result(Verdict.NOT_ROBUST, violation=violation, **known))
             elif union.verdict is Verdict.UNDECIDED:
                 undecided = undecided or union.reason
         fields = chart.fields(self._sequence, length)
@@ -270,6 +291,7 @@ class _Survey:
             else:
                 failed = (start, length, union)
                 length += 1
+                self._tell(self._result(Verdict.UNDECIDED, at_least=length, reason=_GOES_ON))
         chart = _Chart()
         for start in self._sequence.window_starts(length) if map_windows else ():
             chart.add(start, *self._decide(start, length, known_robust=True))

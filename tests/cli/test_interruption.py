@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
+import pkgutil
 import signal
 import subprocess
 import sys
@@ -13,9 +15,11 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+import robustness as rb
 from cli import interruption
 from cli.interruption import Overrun, end_process, interruptibly
 from cli.main import robustness
+from robustness.files import decode_topology
 
 ROOT = Path(__file__).parents[2]
 SQUARE = str(ROOT / "tests" / "data" / "square.json")
@@ -149,3 +153,72 @@ def test_ctrl_c_after_the_answer_keeps_it(monkeypatch: pytest.MonkeyPatch, tmp_p
     outcome = CliRunner().invoke(robustness, ["find", "-n", "6", "-p", "2-robust", "--json"])
     assert outcome.exit_code == 130
     assert json.loads(outcome.stdout)["stats"]["reason"] == "interrupted"
+
+
+def stop(where: str, when: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the call number ``when`` of the function that ``where`` names stop as Ctrl-C stops it."""
+    asked = pkgutil.resolve_name(where)
+    calls = itertools.count(1)
+
+    def stopped(*arguments: object, **options: object) -> object:
+        if next(calls) == when:
+            raise KeyboardInterrupt
+        return asked(*arguments, **options)
+
+    monkeypatch.setattr(where, stopped)
+
+
+def test_ctrl_c_in_find_keeps_the_sizes_that_do_not_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    stop("robustness.graph_search.front._find_on", 4, monkeypatch)
+    outcome = CliRunner().invoke(robustness, ["find", "-n", "3..9", "-p", "4-robust"])
+    assert outcome.exit_code == 130
+    assert outcome.stdout == "undecided: interrupted; none on 3..5 nodes\n"
+    assert "nothing else is claimed" in outcome.stderr
+
+
+def test_ctrl_c_in_find_keeps_the_graph_that_fits(monkeypatch: pytest.MonkeyPatch) -> None:
+    stop("robustness.graph_search.synthesis._propose_until_it_fits", 2, monkeypatch)
+    outcome = CliRunner().invoke(robustness, ["find", "-n", "8", "-p", "2-robust", "--fewest-edges", "--json"])
+    found = json.loads(outcome.stdout)
+    assert (outcome.exit_code, found["verdict"], found["has_fewest_edges"]) == (130, "undecided", False)
+    graph = decode_topology(json.dumps(found["topology"]).encode())
+    assert (graph.n, rb.is_r_robust(graph, 2)) == (8, True)
+
+
+def test_ctrl_c_in_joint_keeps_the_lengths_that_fail(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    sequence = tmp_path / "sequence.json"
+    ring = [[[k, (k + 1) % 5], [(k + 1) % 5, k]] for k in range(5)]
+    sequence.write_text(json.dumps({"nodes": list(range(5)), "period": 5, "steps": ring}))
+    arguments = ["joint", str(sequence), "-r", "1", "--json"]
+    whole = json.loads(CliRunner().invoke(robustness, arguments).stdout)
+    kept = []
+    for when in range(1, whole["stats"]["windows"] + 1):
+        with monkeypatch.context() as patch:
+            stop("robustness.time_varying.unions.UnionDecider.decide", when, patch)
+            outcome = CliRunner().invoke(robustness, arguments)
+        assert outcome.exit_code == 130
+        found = json.loads(outcome.stdout)
+        assert (found["verdict"], found["reason"]) == ("undecided", "interrupted")
+        kept.append(found["at_least"])
+    assert kept == sorted(kept)
+    assert (kept[0], kept[-1]) == (1, whole["window"])
+
+
+def test_ctrl_c_in_joint_keeps_the_window_that_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    sequence = str(ROOT / "examples" / "round-robin.json")
+    stop("robustness.time_varying.unions.UnionDecider.decide", 3, monkeypatch)
+    outcome = CliRunner().invoke(robustness, ["joint", sequence, "-r", "2", "--window", "1", "--all-windows"])
+    assert outcome.exit_code == 130
+    assert "not all windows after it were decided" in outcome.stdout
+    assert "violating window: step 0" in outcome.stdout
+
+
+def test_ctrl_c_in_a_curve_keeps_what_is_known_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    arguments = ["joint", str(ROOT / "examples" / "round-robin.json"), "-r", "2", "--curve", "--json"]
+    whole = json.loads(CliRunner().invoke(robustness, arguments).stdout)["curve"]
+    stop("robustness.time_varying.front.UnionDecider", 4, monkeypatch)
+    outcome = CliRunner().invoke(robustness, arguments)
+    assert outcome.exit_code == 130
+    part = json.loads(outcome.stdout)["curve"]
+    assert 0 < len(part) < len(whole)
+    assert part.items() < whole.items()
