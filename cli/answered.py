@@ -61,8 +61,10 @@ class Answered:
         if self.mended is None:
             return self
         before = facts_of(self.mended.before, limits)
-        after = None if self.mended.cost is None else facts_of(self.mended.graph, limits)
-        return replace(self, before=before, after=after)
+        if self.mended.cost is None:
+            return replace(self, before=before)
+        is_same = self.mended.graph == self.mended.before
+        return replace(self, before=before, after=before if is_same else facts_of(self.mended.graph, limits))
 
     @property
     def exit_code(self) -> ExitCode:

@@ -25,7 +25,7 @@ def facts_of(graph: Digraph, limits: Limits) -> dict[str, Any]:
     """Return the number of links, the bounds proven on r* and s, and what each threat model guarantees and refutes.
 
     ``r`` and ``s`` are None where their bounds differ. Networks of more than 20 nodes are decided within ``limits`` and
-    a budget of steps; past the deadline nothing but their links is told.
+    budgets of steps; past the deadline nothing but their links is told.
     """
     from robustness.decision.front import determine_within
     from robustness.limits import UNBOUNDED

@@ -52,3 +52,17 @@ def test_a_graph_too_large_for_the_search_is_left_undecided(monkeypatch: pytest.
     assert result.bounds is not None
     assert result.bounds.lower.value < result.bounds.upper.value
     assert "at most 30 nodes" in result.stats["reason"]
+
+
+@pytest.mark.parametrize("steps", [1, 10**6, 10**8])
+@pytest.mark.parametrize("n", [18, 23, 26])
+def test_a_budget_of_steps_leaves_bounds_that_hold_and_are_the_same_again(n: int, steps: int) -> None:
+    graph = rb.Digraph.from_networkx(nx.gnp_random_graph(n, 0.5, seed=n))
+    whole = rb.determine_robustness(graph)
+    found = determination.determine(graph, "auto", Limits(steps=steps), None, None)
+    assert found.bounds is not None
+    assert found.bounds.lower.value <= whole.r <= found.bounds.upper.value
+    if found.verdict is rb.Verdict.DETERMINED and found.s_bounds is not None:
+        assert found.s_bounds.lower.value <= whole.s <= found.s_bounds.upper.value
+    again = determination.determine(graph, "auto", Limits(steps=steps), None, None)
+    assert (found.verdict, found.bounds, found.s_bounds) == (again.verdict, again.bounds, again.s_bounds)

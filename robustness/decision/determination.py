@@ -144,7 +144,7 @@ def _limits_for_s(graph: Digraph, algorithm: str, limits: Limits, s_time_limit: 
     """Return how hard to look for s: for as long as the user said, else until it is exact where that takes seconds."""
     if s_time_limit is not None:
         return limits.within(s_time_limit)
-    if limits.deadline is not None or algorithm != "auto" or graph.n <= EXACT_S_NODES:
+    if limits.steps is not None or limits.deadline is not None or algorithm != "auto" or graph.n <= EXACT_S_NODES:
         return limits
     return limits.counted(_S_STEPS)
 
@@ -203,11 +203,13 @@ def _greatest_r(work: _Work, on_bounds: Callable[[Bounds], None]) -> Bounds:
 
     for thorough in (False, True):
         part = limits.share(1 / 2)
-        steps = Steps(_HEURISTIC_STEPS, part.expired)
+        steps = Steps(_allowed(limits, _HEURISTIC_STEPS), part.expired)
         cheap = bounds(graph, seed=limits.seed, steps=steps, on_bounds=report, thorough=thorough)
         work.name = work.name if work.stats else "bounds"  # a search has counters
         found = found.met_with(cheap)
         found = _descend(work, found, _one_thread(limits, _SHORT_STEPS), on_bounds)
+    if limits.steps is not None:
+        return _climb(work, found, limits, on_bounds)
     is_last, turn, budget = False, 0, _TURN_STEPS
     while found.lower.value < found.upper.value and not is_last and not limits.expired():
         # Which end gives way sooner is not known, so both have their turns, until one r is left.
@@ -222,7 +224,12 @@ def _greatest_r(work: _Work, on_bounds: Callable[[Bounds], None]) -> Bounds:
 
 def _one_thread(limits: Limits, steps: int) -> Limits:
     """Return limits for a search that a budget may stop: one thread stops at the same place on every machine."""
-    return replace(limits, jobs=1, steps=steps)
+    return replace(limits, jobs=1, steps=_allowed(limits, steps))
+
+
+def _allowed(limits: Limits, steps: int) -> int:
+    """Return these steps, or fewer where one search has a smaller budget."""
+    return steps if limits.steps is None else min(steps, limits.steps)
 
 
 def _look_for_pairs(work: _Work, found: Bounds, steps: Steps, turn: int, on_bounds: Callable[[Bounds], None]) -> Bounds:
@@ -326,11 +333,12 @@ def _cheap_s(work: _Work, r: int, known: Bounds, limits: Limits) -> Bounds:
 
     if robust_by_degree(work.graph, r):
         return Bounds(Bound(work.graph.n, "degree rule: (r,s)-robust for every s"), known.upper)
-    if work.graph.n <= EXACT_S_NODES:
+    transform_steps = work.graph.n << work.graph.n
+    if work.graph.n <= EXACT_S_NODES and _allowed(limits, transform_steps) == transform_steps:
         exact = _by_transform(work.graph, r, limits)
         if exact is not None:
             return exact
-    steps = Steps(_HEURISTIC_STEPS, limits.share(1 / 4).expired)
+    steps = Steps(_allowed(limits, _HEURISTIC_STEPS), limits.share(1 / 4).expired)
     found = fewest_exempt(work.graph, r, seed=limits.seed, steps=steps, restarts=4, lower=known.lower.value)
     if found is None:
         return known
