@@ -28,7 +28,7 @@ DEMO_R := 5
 DEMO_CERTIFICATE := $(BUILD)/demo/di-yuan-$(DEMO_R)-robust.cert
 DEMO_CANONICAL := $(BUILD)/demo/di-yuan.graph
 
-.PHONY: help demo venv test test-slow fuzz lint types docs coverage-kernel formal bench bench-quick wheel lock clean
+.PHONY: help demo venv test test-slow fuzz lint types docs figures coverage-kernel formal bench bench-quick wheel lock clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */\1\t/' | expand -t 18
@@ -100,6 +100,24 @@ atlas: $(READY) ## survey all topohub networks and small graphs anew into docs/a
 	$(BIN)/python -m benchmarks.atlas measure
 	@mkdir -p $(BUILD)/docs
 	$(BIN)/python -m benchmarks.atlas page $(BUILD)/docs/atlas.html
+
+# The commands that the pages name beside their pictures; the last takes a few minutes and writes its page as well.
+TUTORIAL := $(BUILD)/tutorial
+figures: $(READY) ## draw the pictures of the documents anew
+	$(BIN)/robustness draw topohub:sndlib/polska -r 2 -o docs/figures/first.svg
+	$(BIN)/python examples/how_many_liars.py docs/figures/how-many-liars.svg
+	$(BIN)/python examples/mending_stories.py docs/figures
+	$(BIN)/python examples/platoon_links.py --save $(BUILD)/joint
+	$(BIN)/robustness joint $(BUILD)/joint/fast.json -r 3 --tau 11 --plot docs/figures/joint.svg
+	@mkdir -p $(TUTORIAL)
+	$(BIN)/robustness build platoon --n 10 --k 3 -o $(TUTORIAL)/platoon.graphml
+	$(BIN)/robustness tolerance $(TUTORIAL)/platoon.graphml --model delayed -o $(TUTORIAL)/evidence
+	$(BIN)/robustness simulate $(TUTORIAL)/platoon.graphml --attack $(TUTORIAL)/evidence/delayed-attack.json --steps 60 \
+		--plot docs/figures/tutorial-platoon.png
+	$(BIN)/robustness simulate --experiment setting-1 --plot docs/figures/paper
+	$(BIN)/robustness simulate --experiment setting-2 --plot docs/figures/paper
+	$(BIN)/python -m benchmarks.frontier --record docs/frontier.jsonl --show --picture docs/figures/frontier.svg
+	$(BIN)/python -m robustness.paper.audit docs
 
 SECONDS := 60
 fuzz: $(READY) ## mutated files, certificates and options for SECONDS=60: only promised exit codes; build/fuzz keeps finds

@@ -34,6 +34,7 @@ from robustness.cubes import Cube
 from robustness.cubes.cube import CubeQuestion
 from robustness.cubes.estimate import Walker, duration_in_words
 from robustness.cubes.solving import solve
+from robustness.figures.saving import new_figure, save_figure
 
 
 @dataclass(frozen=True)
@@ -158,12 +159,8 @@ def row(name: str, outcomes: Sequence[Outcome], limit: float) -> str:
 
 def picture(by_name: dict[str, list[Outcome]], path: str) -> None:
     """Draw every seed of every instance: the seconds it took, or what the estimate says, as a hollow mark."""
-    import matplotlib as mpl
-
-    mpl.use("svg")
-    from matplotlib import pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(8, 0.45 * len(by_name) + 1.2))
+    figure = new_figure(8, 0.45 * len(by_name) + 1.2)
+    axes = figure.subplots()
     for place, outcomes in enumerate(by_name.values()):
         for each in outcomes:
             if each.left is None:
@@ -177,8 +174,7 @@ def picture(by_name: dict[str, list[Outcome]], path: str) -> None:
     axes.set(xscale="log", yticks=range(len(by_name)), ylim=(len(by_name) - 0.5, -0.6))
     axes.set_xlabel("seconds of one core: decided (filled), or estimated with its spread (hollow)")
     axes.set_yticklabels(list(by_name))
-    figure.tight_layout()
-    figure.savefig(path, metadata={"Date": None})
+    save_figure(figure, path)
 
 
 def measure_estimator() -> None:

@@ -152,13 +152,13 @@ def _print(console: Console, result: FindResult, nodes: range, output: str | Non
 def _verdict_text(result: FindResult, nodes: range) -> str:
     from robustness.graph_search import FindVerdict
 
-    smaller = f"; none on {_numbers(result.impossible_for)} nodes" if result.impossible_for else ""
+    smaller = f"; none on {_numbers(result.impossible_for)}" if result.impossible_for else ""
     fewest = ", no graph with fewer fits" if result.has_fewest_edges else ""
     match result.verdict:
         case FindVerdict.FOUND:
             return f"found: {counted(result.n or 0, 'node')}, {counted(result.edges or 0, 'edge')}{fewest}{smaller}"
         case FindVerdict.IMPOSSIBLE:
-            return f"impossible: no graph on {_numbers(nodes)} nodes fits"
+            return f"impossible: no graph on {_numbers(nodes)} fits"
         case _:
             reason = result.stats.get("reason", "a limit was reached")
             if result.graph is not None:
@@ -173,4 +173,4 @@ def _verdict_text(result: FindResult, nodes: range) -> str:
 
 
 def _numbers(sizes: range | tuple[int, ...]) -> str:
-    return f"{sizes[0]}" if len(sizes) == 1 else f"{sizes[0]}..{sizes[-1]}"
+    return counted(sizes[0], "node") if len(sizes) == 1 else f"{sizes[0]}..{sizes[-1]} nodes"

@@ -18,7 +18,7 @@ from robustness.spelled import counted
 from .choices import THREAT_MODEL_NAMES
 from .exit_codes import ExitCode
 from .interruption import interruptibly
-from .options import asked_reading, complete_files, jobs_option, reading_options, seed_option, timeout_option
+from .options import Seconds, asked_reading, complete_files, jobs_option, reading_options, seed_option, timeout_option
 from .output import Console
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ _OPTIONS: tuple[Callable[[Any], Any], ...] = (
     ),
     click.option(
         "--total-timeout",
-        type=click.FloatRange(min=0, min_open=True),
+        type=Seconds(),
         metavar="SECONDS",
         help="For all networks together.",
     ),

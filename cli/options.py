@@ -39,18 +39,24 @@ _Command = TypeVar("_Command", bound=Callable[..., Any])
 
 
 class Seconds(click.ParamType):  # type: ignore[type-arg]  # generic only from click 8.4 on
-    """A positive, finite number of seconds."""
+    """A positive, finite number of seconds, or none at all where that says that a part is left out."""
 
     name = "seconds"
 
+    def __init__(self, *, can_be_none: bool = False) -> None:
+        self._can_be_none = can_be_none
+
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """Return ``value`` as a number; NaN, infinity and everything up to zero are refused."""
+        """Return ``value`` as a number; NaN, infinity and what is below are refused."""
         try:
             seconds = float(value)
         except ValueError:
             seconds = math.nan
-        if not (math.isfinite(seconds) and seconds > 0):
-            self.fail(f"{value!r} is not a positive, finite number of seconds.", param, ctx)
+        if not (math.isfinite(seconds) and (seconds > 0 or (self._can_be_none and seconds == 0))):
+            kind = (
+                "finite number of seconds of at least 0" if self._can_be_none else "positive, finite number of seconds"
+            )
+            self.fail(f"{value!r} is not a {kind}.", param, ctx)
         return seconds
 
 

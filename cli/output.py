@@ -36,6 +36,7 @@ __all__ = [
     "pass_console",
     "set_document",
     "set_text",
+    "terminal_width",
     "wrapped",
     "write_help",
 ]
@@ -151,6 +152,13 @@ class ProgressLine:
         text = ", ".join(part for part in parts if part)
         self._text = text[: shutil.get_terminal_size().columns - 1]
         _write(f"\r\x1b[K{self._text}", to_error=True, end="")
+
+
+def terminal_width() -> int | None:
+    """Return the columns of the terminal that results go to; None when they go to a file or another program."""
+    if sys.stdout is None or not sys.stdout.isatty():
+        return None
+    return max(shutil.get_terminal_size().columns, 40)
 
 
 def wrapped(text: str, *, indent: str = "", hanging: str = "") -> str:

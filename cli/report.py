@@ -16,6 +16,7 @@ from .many_networks import (
     run_survey,
     state_option,
 )
+from .options import Seconds
 from .output import Console
 from .query import speaking
 
@@ -37,7 +38,7 @@ __all__ = ["command"]
 @state_option
 @click.option(
     "--mending",
-    type=click.FloatRange(min=0),
+    type=Seconds(can_be_none=True),
     default=5.0,
     show_default=True,
     metavar="SECONDS",

@@ -16,8 +16,8 @@ from .many_networks import (
     run_survey,
     state_option,
 )
-from .options import json_option
-from .output import Console
+from .options import Seconds, json_option
+from .output import Console, terminal_width, wrapped
 from .query import cluster_option, joined_cluster, speaking
 
 __all__ = ["SCHEMA", "command"]
@@ -36,7 +36,7 @@ _NAMES = tuple(_KINDS.values())
 @state_option
 @click.option(
     "--mending",
-    type=click.FloatRange(min=0),
+    type=Seconds(can_be_none=True),
     default=0.0,
     metavar="SECONDS",
     help="For each network of up to 80 nodes, to find the fewest links that give it what is required (or one more r).",
@@ -63,6 +63,7 @@ def command(
     """
     from robustness.files.writing import replace_file
     from robustness.reporting.wording import headline
+    from robustness.surveying.fitting import fitted
     from robustness.surveying.tables import TABLES
 
     require_outputs_apart(networks, [output, state])
@@ -83,6 +84,9 @@ def command(
         console.result(headline(found, networks.gate))
     else:
         if output is None:
+            columns = terminal_width()
+            if kind == "table" and columns is not None:
+                content = fitted(found.listed, found.models, columns)
             console.result(content.rstrip("\n"))
-        console.talk(headline(found, networks.gate))
+        console.talk(wrapped(headline(found, networks.gate)))
     ctx.exit(exit_code(console, found, is_interrupted, written))

@@ -17,7 +17,7 @@ from robustness.spelled import counted, plural
 from .choices import THREAT_MODEL_NAMES
 from .exit_codes import ExitCode
 from .interruption import Overrun
-from .options import graph_argument, load_graph, load_sequence
+from .options import Seconds, graph_argument, load_graph, load_sequence
 from .output import Console, ProgressLine, graph_document, set_text, wrapped
 from .query import Query, query_options
 
@@ -89,7 +89,9 @@ class Report:
     metavar="T",
     help="GRAPH is a sequence as for 'joint'; values are used up to T steps after they were sent, also of links gone.",
 )
-@click.option("--T", "period_T", type=float, metavar="SECONDS", help="The sampling period of second-order vehicles.")
+@click.option(
+    "--T", "period_T", type=Seconds(), metavar="SECONDS", help="The sampling period of second-order vehicles."
+)
 @click.option("--alpha", type=float, metavar="GAIN", help="With --T: their gain; 1.5/T unless given.")
 @click.option("--sigma", type=float, metavar="S", help="With --T: kept weights add up to at most S; 1 unless given.")
 @click.option(

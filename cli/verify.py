@@ -10,7 +10,7 @@ import click
 
 from .choices import FACES
 from .exit_codes import ExitCode
-from .options import asked_reading, graph_argument, json_option, load_graph
+from .options import Seconds, asked_reading, graph_argument, json_option, load_graph
 from .output import Console, ProgressLine
 from .query import speaking
 
@@ -48,7 +48,10 @@ SCHEMA = "robustness/verify/1"
     "of what malicious nodes can do.",
 )
 @click.option(
-    "--timeout", type=float, metavar="SECONDS", help="Of a mending certificate: for the solver that confirms the bound."
+    "--timeout",
+    type=Seconds(),
+    metavar="SECONDS",
+    help="Of a mending certificate: for the solver that confirms the bound.",
 )
 @click.option(
     "--jobs",

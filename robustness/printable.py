@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-__all__ = ["printable"]
+import unicodedata
+
+__all__ = ["printable", "width_of"]
 
 
 def printable(text: str, kept: str = "") -> str:
@@ -15,5 +17,19 @@ def printable(text: str, kept: str = "") -> str:
         return text
     return "".join(
         letter if letter.isprintable() or letter in kept else letter.encode("unicode_escape").decode()
+        for letter in text
+    )
+
+
+def width_of(text: str) -> int:
+    """Return how many columns of a terminal text takes: two for letters such as Chinese, none for accents.
+
+    >>> width_of("網路"), width_of("naive")
+    (4, 5)
+    """
+    if text.isascii():
+        return len(text)
+    return sum(
+        0 if unicodedata.combining(letter) else 2 if unicodedata.east_asian_width(letter) in "WF" else 1
         for letter in text
     )

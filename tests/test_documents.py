@@ -28,6 +28,24 @@ SHOWN = [(page, match) for page in PAGES for match in BLOCK.finditer(page.read_t
 VARIABLE = re.compile(r'("seconds": |seconds +|in )[0-9.e-]+( s)?')
 
 
+def test_every_picture_has_a_command_that_makes_it() -> None:
+    """``make figures`` names each picture of the documents, or the folder that a program fills with it."""
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    target = re.search(r"^figures:.*\n((?:\t.*\n)+)", makefile, re.MULTILINE)
+    assert target is not None
+    programs = (path.read_text(encoding="utf-8") for path in (ROOT / "examples").glob("*.py"))
+    fills_docs = "\n".join(text for text in programs if "docs/figures\n" in text)
+    pictures = [path for path in (ROOT / "docs" / "figures").rglob("*") if path.is_file()]
+    assert len(pictures) > 20
+    for path in pictures:
+        name = str(path.relative_to(ROOT))
+        folder = re.search(rf" {path.parent.relative_to(ROOT)}\n", target[1]) is not None
+        is_audit = path.parent.name == "audit" and "robustness.paper.audit docs" in target[1]
+        assert name in target[1] or is_audit or (folder and (path.parent.name == "paper" or path.name in fills_docs)), (
+            name
+        )
+
+
 def output(commands: str) -> str:
     """Return what a pipeline of our commands prints, in a folder of its own."""
     with tempfile.TemporaryDirectory() as folder:

@@ -19,6 +19,7 @@ from robustness.connectivity import smallest_separation
 from robustness.constructions.small_graphs import Batch, batch_profiles, batch_s_max
 from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph
+from robustness.spelled import counted
 
 __all__ = ["STATEMENTS", "Statement", "profile"]
 
@@ -69,7 +70,7 @@ def _connected(graph: Digraph) -> str | None:
     found = smallest_separation(graph, r)
     if found is None and r < graph.n:
         return None
-    return f"{r}-robust, but removing {len(found.separator) if found else 0} nodes disconnects it"
+    return f"{r}-robust, but removing {counted(len(found.separator) if found else 0, 'node')} disconnects it"
 
 
 def _connected_is_robust(graph: Digraph) -> str | None:
@@ -169,7 +170,7 @@ def _only_complete(graph: Digraph) -> str | None:
     if graph.n % 2 == 0 or _largest_r(graph) < largest_conceivable_r(graph.n) or graph.n < 3:
         return None
     missing = graph.n * (graph.n - 1) - graph.arc_count
-    return f"{_largest_r(graph)}-robust with {missing} arcs missing" if missing else None
+    return f"{_largest_r(graph)}-robust with {counted(missing, 'arc')} missing" if missing else None
 
 
 def _normal_part(graph: Digraph) -> str | None:

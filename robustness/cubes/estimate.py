@@ -24,6 +24,7 @@ import numpy as np
 from robustness.cubes.cube import Cube, CubeQuestion, Words
 from robustness.cubes.solving import kernel_search
 from robustness.kernels.layout import CLOSED, PAUSED, P, T
+from robustness.spelled import counted
 
 __all__ = ["Estimate", "Walker", "duration_in_words"]
 
@@ -87,7 +88,7 @@ class Estimate:
         about, low, high = (self.seconds(nodes) for nodes in (self.left, self.low, self.high))
         if about is None or low is None or high is None:
             return closed
-        who = f"{self.workers} worker{'s' if self.workers > 1 else ''}"
+        who = counted(self.workers, "worker")
         return (
             f"{closed}, about {duration_in_words(about)} left on {who} "
             f"({duration_in_words(low)} to {duration_in_words(high)})"

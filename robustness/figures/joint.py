@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from robustness.figures.saving import new_figure, save_figure
 from robustness.figures.wording import plain
 from robustness.results import Verdict
+from robustness.spelled import counted
 from robustness.time_varying import JointResult, TimeVaryingGraph, Violation
 
 if TYPE_CHECKING:
@@ -112,7 +113,7 @@ def _draw_windows(axes: Axes, result: JointResult, shorter: JointResult | None) 
         return
     floor = 0.35 if shorter is not None and shorter.window_unions else 0.0
     for verdict, bars in _bars(result).items():
-        label = f"{_WORDS[verdict]}: {sum(width for _, width in bars)} windows"
+        label = f"{_WORDS[verdict]}: {counted(sum(width for _, width in bars), 'window')}"
         # Told apart without colour too: robust windows are plain, the others hatched.
         axes.broken_barh(
             bars, (floor, 1.0 - floor), facecolors=_COLORS[verdict], edgecolors="white", linewidths=0,
@@ -124,12 +125,11 @@ def _draw_windows(axes: Axes, result: JointResult, shorter: JointResult | None) 
                 count = sum(width for _, width in bars)
                 axes.broken_barh(
                     bars, (0, 0.25), facecolors="#9a9a9a", edgecolors="#9a9a9a", linewidths=0.5,
-                    label=f"of {shorter.examined} step{'s' * (shorter.examined != 1)}: {count} {_WORDS[verdict]}",
+                    label=f"of {counted(shorter.examined, 'step')}: {count} {_WORDS[verdict]}",
                 )  # fmt: skip
     _legend(axes)
     name = f"{result.r}-robust" if result.s == 1 else f"({result.r},{result.s})-robust"
-    steps = "1 step" if result.examined == 1 else f"{result.examined} steps"
-    axes.set_xlabel(f"start of the window: is the union over {steps} {name}?")
+    axes.set_xlabel(f"start of the window: is the union over {counted(result.examined, 'step')} {name}?")
 
 
 def _bars(result: JointResult) -> dict[Verdict, list[tuple[int, int]]]:

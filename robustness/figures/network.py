@@ -18,6 +18,7 @@ from robustness.figures.placement import Positions, moved_apart, positions_for, 
 from robustness.figures.saving import new_figure, save_figure
 from robustness.figures.wording import name_on_picture, plain
 from robustness.showing import Shown
+from robustness.spelled import counted
 from robustness.time_varying import TimeVaryingGraph
 
 if TYPE_CHECKING:
@@ -210,7 +211,7 @@ def _draw_group(
 def _told(name: str, group: frozenset[int]) -> str:
     """Return what the legend says of a set of nodes."""
     told = {"M": "M, malicious", "rest": "other"}.get(name, name)
-    return f"{told}: {len(group)} node{'s' * (len(group) != 1)}"
+    return f"{told}: {counted(len(group), 'node')}"
 
 
 def _draw_arcs(

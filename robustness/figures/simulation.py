@@ -18,6 +18,7 @@ from robustness.simulation.dynamics import Floats, to_absolute
 from robustness.simulation.outcome import Outcome, Trajectory
 from robustness.simulation.scenario import Scenario, Start
 from robustness.simulation.update_rules import rule_named
+from robustness.spelled import counted
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -142,11 +143,7 @@ def run_title(run: Run) -> str:
     """Return what a picture of the run says above it: its own title, the rule, the model and the verdict."""
     scenario, outcome = run.scenario, run.outcome
     how = f"{rule_named(scenario.rule).name}, f = {scenario.f}, {scenario.model}"
-    delays = (
-        ""
-        if scenario.schedule.synchronous
-        else f", values up to {scenario.schedule.oldest} step{'s' * (scenario.schedule.oldest != 1)} old"
-    )
+    delays = "" if scenario.schedule.synchronous else f", values up to {counted(scenario.schedule.oldest, 'step')} old"
     end = outcome.verdict.value + (", exactly" if outcome.exact else "")
     if outcome.diverged_at is not None:
         end += f" at step {outcome.diverged_at}"
@@ -214,7 +211,8 @@ def _time_axis(run: Run, last: int) -> str:
     """Return what stands under the picture: the unit, and how long the run was where it is cut short."""
     unit = "time kT" if run.scenario.T != 1 else "step k"
     end = len(recorded(run).p) - 1
-    return unit if last == end or run.outcome.diverged_at is not None else f"{unit} (the run has {end} steps)"
+    is_whole = last == end or run.outcome.diverged_at is not None
+    return unit if is_whole else f"{unit} (the run has {counted(end, 'step')})"
 
 
 def _fit(panel: Axes, shown: Floats) -> None:

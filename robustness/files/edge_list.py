@@ -140,8 +140,8 @@ def without_counts(content: Content) -> tuple[Content, list[str] | None, list[st
         first = _numbered_from(numbers, counts[0])
         if first is None or (counts[0] == len(lines) - 1 and len(numbers) != counts[0]):
             raise UnreadableTopology(
-                f"line {number}: {text} may be the number of nodes or of links, and {len(numbers)} nodes have links: "
-                "--skip-lines 1 leaves it out"
+                f"line {number}: {text} may be the number of nodes or of links, and links join "
+                f"{counted(len(numbers), 'node')}: --skip-lines 1 leaves it out"
             )
         nodes = [str(k) for k in range(first, first + counts[0])]
         return rest, nodes, [f"line {number} says {counted(counts[0], 'node')}"]

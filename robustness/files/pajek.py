@@ -91,7 +91,9 @@ class _Reader:
                 self.notes.append(f"two modes, of which the first is vertices 1..{rest[1]}")
             self.count = int(rest[0][:18])
             if self.count > NODE_LIMIT:
-                raise UnreadableTopology(f"line {number}: announces {rest[0]} nodes, and at most {NODE_LIMIT} are read")
+                raise UnreadableTopology(
+                    f"line {number}: at most {NODE_LIMIT} nodes are read, and it announces {rest[0]}"
+                )
             self.read = self.vertex
             return
         parts: dict[str, Callable[[int, list[str]], None]] = {

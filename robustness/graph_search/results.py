@@ -72,7 +72,8 @@ class FindResult(Shown):
 
     def summary(self) -> str:
         """Return the answer in one line."""
-        none = f"none on {', '.join(map(str, self.impossible_for))} nodes" if self.impossible_for else ""
+        *others, last = self.impossible_for or (0,)
+        none = f"none on {''.join(f'{n}, ' for n in others)}{counted(last, 'node')}" if self.impossible_for else ""
         if self.verdict is FindVerdict.FOUND:
             fewest = ", the fewest possible" if self.has_fewest_edges else ""
             return f"found: {counted(self.n or 0, 'node')}, {counted(self.edges or 0, 'edge')}{fewest}" + (

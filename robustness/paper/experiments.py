@@ -43,6 +43,7 @@ from robustness.simulation.schedules import (
     Schedule,
 )
 from robustness.simulation.topology import Topology, as_topology
+from robustness.spelled import counted
 from robustness.time_varying import TimeVaryingGraph, check_joint_robustness
 
 __all__ = ["EXPERIMENTS", "Case", "CaseResult", "Experiment", "experiment_named", "run_experiment"]
@@ -203,7 +204,7 @@ def _sufficiency() -> tuple[Case, ...]:
             Topology((graph,)), f, adversary=TwoFace(), schedule=Schedule(AdversarialUpdates(4), AdversarialDelays(3)),
             steps=3000,
         )  # fmt: skip
-        name = f"{graph.n} nodes, f = {f}, seen two-faced"
+        name = f"{counted(graph.n, 'node')}, f = {f}, seen two-faced"
         cases.append(Case(name, f"{2 * f + 1}-robust", "agreement", scenario, _spread_out(graph, range(f))))
     return tuple(cases)
 
@@ -223,7 +224,7 @@ def _corollary_2() -> tuple[Case, ...]:
         scenario = Scenario(as_topology(sequence, 3000), 1, adversary=TwoFace(), schedule=late, steps=3000)
         start = _spread_out(scenario.network.union, [0])
         name = f"complete graph in thirds, tau = {tau}"
-        cases.append(Case(name, f"jointly 3-robust over {window} steps", "agreement", scenario, start))
+        cases.append(Case(name, f"jointly 3-robust over {counted(window or 0, 'step')}", "agreement", scenario, start))
     broken = two_f_robust_counterexample(1, "corrected")
     halves = [nx.Graph(sorted(broken.edges)[k::2]) for k in range(2)]
     for part in halves:

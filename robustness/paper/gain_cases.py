@@ -20,6 +20,7 @@ from robustness.simulation.dynamics import Floats
 from robustness.simulation.motion import Push
 from robustness.simulation.scenario import Scenario, Start
 from robustness.simulation.schedules import AdversarialDelays, EveryStep, PeriodicDelays, PeriodicUpdates, Schedule
+from robustness.spelled import counted
 
 __all__ = ["GainRun", "Orbit", "diverging_delays", "gains_outside", "push_runs", "swap_runs"]
 
@@ -124,7 +125,8 @@ def gains_outside() -> tuple[GainRun, ...]:
     for T, alpha, turn in ((0.5, 0.5, 6), (0.5, 1.0, 6), (0.1, 1.0, 40), (0.01, 0.5, 420), (0.01, 1.0, 500)):
         orbit = diverging_delays(T, alpha, turn)
         if orbit is None:
-            raise InvalidParameter(f"no orbit grows for T = {T}, alpha = {alpha} in turns of {turn} steps: take more")
+            turns = f"turns of {counted(turn, 'step')}"
+            raise InvalidParameter(f"no orbit grows for T = {T}, alpha = {alpha} in {turns}: take more")
         for gain, expected in ((alpha, "divergence"), (2.2 if T < 0.5 else 1.8, "agreement")):
             scenario = Scenario(
                 graph, 1, T=T, alpha=gain, weights=weights, steps=_TURNS * turn,
@@ -134,7 +136,9 @@ def gains_outside() -> tuple[GainRun, ...]:
             name = f"K_5,5, T = {T:g}, alpha = {gain:g}, delays of the orbit for {alpha:g}"
             reading = f"3-robust, f = 1, nobody malicious, gains {side} the region"
             if expected == "divergence":
-                reading += f": the motion mirrors itself and grows {orbit.growth:.4g}-fold every {turn} steps"
+                reading += (
+                    f": the motion mirrors itself and grows {orbit.growth:.4g}-fold every {counted(turn, 'step')}"
+                )
             runs.append(GainRun(name, reading, expected, scenario, _two_sides(orbit.position, orbit.velocity)))
     return tuple(runs)
 

@@ -6,16 +6,16 @@ import csv
 import io
 import json
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 from xml.etree import ElementTree as ET
 
-from robustness.printable import printable
+from robustness.printable import printable, width_of
 from robustness.spelled import Spelling, counted, listed_in_words
 from robustness.surveying.row import NOT_REACHED, Row
 
-__all__ = ["TABLES", "cells", "flat", "text"]
+__all__ = ["TABLES", "aligned", "cells", "flat", "text"]
 
 #: How many nodes of a set a failure names.
 _MOST_NODES = 20
@@ -76,16 +76,17 @@ def _interval(low: int | None, high: int | None) -> str:
 def text(rows: Sequence[Row], models: Sequence[str]) -> str:
     """Return a table for a terminal: names to the left, numbers to the right."""
     table = [[printable(cell) for cell in line] for line in cells(rows, models)]
-    widths = [max(len(line[k]) for line in table) for k in range(len(table[0]))]
+    return "\n".join(aligned(table))
+
+
+def aligned(table: Sequence[Sequence[str]], gap: int = 2) -> Iterator[str]:
+    """Yield a line for each row, in columns ``gap`` spaces apart; the first row is the head."""
+    widths = [max(map(width_of, column)) for column in zip(*table, strict=True)]
     is_word = [name in ("network", "gate", "note") for name in table[0]]
-    lines = (
-        "  ".join(
-            cell.ljust(width) if word else cell.rjust(width)
-            for cell, width, word in zip(line, widths, is_word, strict=True)
-        ).rstrip()
-        for line in table
-    )
-    return "\n".join(lines)
+    for line in table:
+        rooms = (" " * (width - width_of(cell)) for cell, width in zip(line, widths, strict=True))
+        padded = (cell + room if word else room + cell for cell, room, word in zip(line, rooms, is_word, strict=True))
+        yield (" " * gap).join(padded).rstrip()
 
 
 def _csv(rows: Sequence[Row], models: Sequence[str]) -> str:

@@ -10,6 +10,7 @@ from robustness.definitions import r_reachable_ids
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import Undecided
 from robustness.results import Verdict, Witness
+from robustness.spelled import counted
 
 __all__ = ["assert_not_robust", "assert_robust", "draw_violation"]
 
@@ -66,7 +67,7 @@ def assert_not_robust(G: GraphLike, r: int, s: int = 1, **options: Any) -> Witne
     if result.verdict is Verdict.UNDECIDED:
         raise Undecided(f"{_name(r, s)}ness was not decided: raise the time limit")
     if result.verdict is Verdict.ROBUST:
-        size = f"{graph.n} nodes, {graph.arc_count} arcs"
+        size = f"{counted(graph.n, 'node')}, {counted(graph.arc_count, 'arc')}"
         raise AssertionError(f"{_name(r, s)}, though it should not be: {size}, no violating pair exists")
     return result.witness
 
@@ -78,7 +79,9 @@ def draw_violation(graph: Digraph, pair: Witness | None, r: int, s: int = 1) -> 
     sides = [graph.ids(side) for side in pair]
     reachable = [r_reachable_ids(graph, side, r) for side in sides]
     count, total = sum(map(len, reachable)), sum(map(len, sides))
-    lines = [f"not {_name(r, s)}: {count} of {total} nodes of S1 and S2 hear {r} or more nodes outside their set"]
+    lines = [
+        f"not {_name(r, s)}: {count} of {counted(total, 'node')} of S1 and S2 hear {r} or more nodes outside their set"
+    ]
     for name, side, reached in zip(("S1", "S2"), sides, reachable, strict=True):
         lines.append(f"  {name} = {_set_text(graph, side)}")
         width = max(len(repr(graph.labels[i])) for i in side)

@@ -14,6 +14,7 @@ from robustness.decision.bounds.degree import sufficient_degree
 from robustness.digraph import GraphLike, as_digraph
 from robustness.errors import InvalidParameter, MissingExtra
 from robustness.results import Witness
+from robustness.spelled import counted
 
 try:
     from hypothesis import strategies as st
@@ -105,7 +106,9 @@ def rs_robust_graphs(
     low = least if min_nodes is None else max(min_nodes, least)
     high = max(least, low) + 4 if max_nodes is None else max_nodes
     if high < low:
-        raise InvalidParameter(f"a ({r},{s})-robust graph has at least {least} nodes, so max_nodes is at least {low}")
+        raise InvalidParameter(
+            f"a ({r},{s})-robust graph has at least {counted(least, 'node')}, so max_nodes is at least {low}"
+        )
     return _robust_graphs(r, s, least, low, high, directed)
 
 

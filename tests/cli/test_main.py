@@ -17,6 +17,7 @@ from click.testing import CliRunner
 
 import robustness as rb
 from cli import choices, main
+from cli.options import Seconds
 from cli.output import Console, ProgressLine, set_text
 from robustness.files import FORMAT_NAMES
 from robustness.limits import Progress
@@ -51,6 +52,21 @@ class TestCommands:
             assert command.name == name
             assert CliRunner().invoke(main.robustness, [name, "--help"]).exit_code == 0
             assert name in CliRunner().invoke(main.robustness, ["--help"]).stdout
+
+    def test_seconds_are_one_kind_of_number_in_every_command(self) -> None:
+        """Options that take seconds are told by their metavar; each of them refuses what no clock can tell."""
+        refused = []
+        for name in main.COMMANDS:
+            command = main.robustness.get_command(click.Context(main.robustness), name)
+            assert command is not None
+            for option in command.params:
+                if option.metavar == "SECONDS" or "timeout" in (option.name or ""):
+                    assert isinstance(option.type, Seconds), (name, option.name)
+                    for value in ("nan", "inf", "-1", "soon"):
+                        with pytest.raises(click.BadParameter, match="number of seconds"):
+                            option.type.convert(value, option, None)
+                    refused.append((name, option.name))
+        assert {("verify", "timeout"), ("survey", "total_timeout"), ("report", "mending")} <= set(refused)
 
     def test_a_module_that_is_not_there_breaks_no_help(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(main, "COMMANDS", {"check": "cli.check:command", "gone": "cli.gone:command"})

@@ -21,6 +21,7 @@ from robustness.paper.audit.claims import (
     small_graphs,
     trapped,
 )
+from robustness.spelled import counted
 from robustness.traps import is_trap
 
 __all__ = ["CLAIMS"]
@@ -38,7 +39,8 @@ def _incoming_anywhere(graph: Digraph) -> str | None:
         literal = [i for side in sides for i in side if graph.in_degrees[i] >= f + 1]
         meant = sum(len(r_reachable_ids(graph, side, f + 1)) for side in sides)
         if len(literal) > f:
-            return f"f = {f}: {len(literal)} nodes have {f + 1} incoming links, {meant} have them from outside"
+            many, links = counted(len(literal), "node"), counted(f + 1, "incoming link")
+            return f"f = {f}: {many} have {links}, {meant} have them from outside"
     return None
 
 
@@ -88,7 +90,7 @@ def _fewer_liars(graph: Digraph) -> str | None:
 def _misled_for_ever(graph: Digraph) -> str | None:
     for f in (1, 2):
         if robust(graph, f + 1) and trapped(graph, f):
-            return f"f = {f}: {f + 1}-robust, with a trap for {f} liar{'s' * (f > 1)}"
+            return f"f = {f}: {f + 1}-robust, with a trap for {counted(f, 'liar')}"
     return None
 
 

@@ -19,6 +19,7 @@ from robustness.simulation.run import simulate
 from robustness.simulation.scenario import Scenario, random_start
 from robustness.simulation.schedules import schedule_named
 from robustness.simulation.topology import Topology
+from robustness.spelled import counted
 
 __all__ = ["CLAIMS"]
 
@@ -135,7 +136,7 @@ def _tau_unknown() -> Outcome:
         agreed += sum(outcome.verdict.value == "agreement" for outcome in simulate(scenario, starts))
     runs = len(starts) * len(taus)
     how = "simulation: K_5, f = 1, greedy, delays to 1, 2, 4, 8, one and the same rule"
-    return Outcome("holds" if agreed == runs else "fails", how, f"{agreed} of {runs} runs agree")
+    return Outcome("holds" if agreed == runs else "fails", how, f"{agreed} of {counted(runs, 'run')} agree")
 
 
 def _rows(longest: int) -> list[tuple[int, ...]]:
@@ -211,8 +212,8 @@ def _jumping_to_and_fro() -> Outcome:
     note = (
         "as values sent it is no effort; as a motion by (2) the speed after m steps is at least 2m(b-a)/T less its "
         "first "
-        f"value, so it grows without bound (at first it may fall: b - a = 100, T = 1, v = 1000 falls for {falls} "
-        f"steps). "
+        f"value, so it grows without bound (at first it may fall: b - a = 100, T = 1, v = 1000 falls for "
+        f"{counted(falls, 'step')}). "
         "Against active sensing it takes unbounded inputs, which the paper allows"
     )
     return Outcome("holds corrected", "exact arithmetic, five first speeds", note)

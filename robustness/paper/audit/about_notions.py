@@ -24,6 +24,7 @@ from robustness.paper.audit.claims import (
     sharper,
     trapped,
 )
+from robustness.spelled import counted
 from robustness.threat_models.results import AttackSets
 from robustness.time_varying import TimeVaryingGraph, check_joint_robustness
 from robustness.traps.question import obeys_bound
@@ -63,7 +64,7 @@ def _weakly_connected_and_robust(graph: Digraph) -> str | None:
     complete_ = graph.arc_count == graph.n * (graph.n - 1)
     if complete_ or graph.n < 4 or not robust(graph, 2, 2) or smallest_separation(graph, 3) is None:
         return None
-    return f"(2,2)-robust, so f = 1 is survived in step, on {graph.n} nodes, and not 3-connected"
+    return f"(2,2)-robust, so f = 1 is survived in step, on {counted(graph.n, 'node')}, and not 3-connected"
 
 
 def _connected_and_trapped(graph: Digraph) -> str | None:
@@ -134,7 +135,8 @@ def _every_step_robust() -> Outcome:
     jointly = check_joint_robustness(sequence, 3).window
     steps = [determine_robustness(graph).r for graph in (star, rest)]
     holds_ = jointly == 2 and max(steps) < 3
-    note = f"K_5 as a star and the rest in turn: jointly 3-robust over {jointly} steps, r* at most {max(steps)} at each"
+    over = counted(jointly or 0, "step")
+    note = f"K_5 as a star and the rest in turn: jointly 3-robust over {over}, r* at most {max(steps)} at each"
     return Outcome("holds" if holds_ else "fails", "search: one periodic network", note)
 
 
@@ -155,7 +157,7 @@ def _longer_windows() -> Outcome:
             for length in range(1, 5):
                 holds_ = check_joint_robustness(sequence, r, window=length).decided()
                 if holds_ != (least is not None and length >= least):
-                    return Outcome("fails", "search", f"{steps}, then nothing: r = {r}, {length} steps")
+                    return Outcome("fails", "search", f"{steps}, then nothing: r = {r}, {counted(length, 'step')}")
     how = f"search: {len(tried)} periodic sequences of three digraphs on 3 nodes, the last one empty"
     return Outcome("holds", how, "so the least l decides whether some l <= tau will do")
 

@@ -25,9 +25,10 @@ from robustness.simulation.run import simulate
 from robustness.simulation.scenario import Scenario, Start, random_start
 from robustness.simulation.schedules import schedule_named
 from robustness.simulation.topology import Topology
+from robustness.spelled import counted
 from robustness.threat_models import tolerance
 
-__all__ = ["CLAIMS", "battery", "counted"]
+__all__ = ["CLAIMS", "battery", "runs_in_words"]
 
 #: Adversaries under the malicious model, each against every malicious set of f nodes.
 STRONGEST = ("constant", "ramp", "random", "two-face", "extreme", "greedy")
@@ -74,7 +75,9 @@ def _necessity() -> Outcome:
             runs += 1
             if not attack.run(50, rule=rule).exact:
                 return Outcome("fails", "simulation", f"{rule}: {attack.story()}", graph)
-    return Outcome("holds", "simulation: all graphs on 2 to 5 nodes, digraphs to 3", f"{runs} runs, all split exactly")
+    return Outcome(
+        "holds", "simulation: all graphs on 2 to 5 nodes, digraphs to 3", f"{counted(runs, 'run')}, all split exactly"
+    )
 
 
 def _sharper() -> Outcome:
@@ -86,7 +89,7 @@ def _sharper() -> Outcome:
             if result.attack is None or not result.attack.run(50, rule=rule).exact:
                 return Outcome("fails", "simulation", rule, graph)
     how = "simulation: a trap of every graph on 2 to 5 nodes, digraph to 3"
-    return Outcome("holds", how, f"{runs} runs, all split exactly")
+    return Outcome("holds", how, f"{counted(runs, 'run')}, all split exactly")
 
 
 def _sufficiency() -> Outcome:
@@ -112,7 +115,7 @@ def _all_agree(graphs: list[Digraph], which: str) -> Outcome:
             total[verdict] += count
     how = f"simulation: {which}, f = 1, every adversary and malicious vehicle"
     broken = total["split"] + total["divergence"]
-    return Outcome("holds" if graphs and not broken else "fails", how, counted(total))
+    return Outcome("holds" if graphs and not broken else "fails", how, runs_in_words(total))
 
 
 def _any_positive_gain() -> Outcome:
@@ -142,11 +145,12 @@ def _gain_region() -> Outcome:
     right = all(each.as_reported for each in results)
     inside = sum(each.outcome.promise_gap is None for each in results)
     how = "simulation: experiments gains-outside and swap, nobody malicious"
-    note = f"{len(results) - inside} runs outside diverge or swap for ever, {inside} inside with the same delays agree"
+    outside = counted(len(results) - inside, "run")
+    note = f"{outside} outside diverge or swap for ever, {inside} inside with the same delays agree"
     return Outcome("holds" if right else "fails", how, note)
 
 
-def counted(counts: dict[str, int]) -> str:
+def runs_in_words(counts: dict[str, int]) -> str:
     """Return counts of runs in words."""
     return ", ".join(f"{count:,} {verdict}" for verdict, count in counts.items() if count) or "no run"
 
@@ -168,7 +172,9 @@ def _robust_at_every_step() -> Outcome:
             agreed += sum(outcome.verdict.value == "agreement" for outcome in simulate(scenario, starts))
     robust_each = all(profile(graph)[2] >= 2 for graph in graphs)
     how = "simulation: wheels on 5 vehicles, another hub at each step, f = 1, W-MSR and DP-MSR, every adversary"
-    return Outcome("holds" if robust_each and agreed == runs else "fails", how, f"{agreed} of {runs} runs agree")
+    return Outcome(
+        "holds" if robust_each and agreed == runs else "fails", how, f"{agreed} of {counted(runs, 'run')} agree"
+    )
 
 
 def _exponential() -> Outcome:
@@ -190,7 +196,7 @@ def _experiment(name: str) -> Callable[[], Outcome]:
             results = run_experiment(EXPERIMENTS[name])
         told = [each for each in results if each.as_reported is not None]
         wrong = [each.case.name for each in told if not each.as_reported]
-        how = f"simulation: experiment {name}, {len(told)} cases"
+        how = f"simulation: experiment {name}, {counted(len(told), 'case')}"
         return Outcome("fails" if wrong else "holds", how, f"not as reported: {', '.join(wrong)}" if wrong else "")
 
     return check
@@ -274,7 +280,7 @@ def _withholding_and_lying() -> Outcome:
             total += len(starts)
             agreed += sum(outcome.verdict is RunVerdict.AGREEMENT for outcome in simulate(scenario, starts))
     how = "simulation: K_5, f = 1 and K_9, f = 2, every adversary keeping back half of its messages"
-    return Outcome("holds" if agreed == total else "fails", how, f"{agreed} of {total} runs agree")
+    return Outcome("holds" if agreed == total else "fails", how, f"{agreed} of {counted(total, 'run')} agree")
 
 
 def _all_see_for_themselves() -> Outcome:
@@ -301,7 +307,7 @@ def _added_links() -> Outcome:
     robust = profile(thin)[3] >= 1
     result = "holds" if robust and agreed == len(outcomes) else "fails"
     how = "simulation: a 3-robust digraph, vehicle 0 adds links"
-    return Outcome(result, how, f"{agreed} of {len(outcomes)} runs agree")
+    return Outcome(result, how, f"{agreed} of {counted(len(outcomes), 'run')} agree")
 
 
 def _omission() -> Outcome:
@@ -320,7 +326,7 @@ def _omission() -> Outcome:
     return Outcome(
         "holds" if agreed == total else "fails",
         "simulation: the 3-robust graphs on 5 and 6 nodes, each vehicle withholding messages",
-        f"{agreed} of {total} runs agree",
+        f"{agreed} of {counted(total, 'run')} agree",
     )
 
 

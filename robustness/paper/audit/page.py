@@ -7,11 +7,12 @@ from typing import Any
 
 from robustness.figures.network import draw_to_file
 from robustness.paper.audit import about_graphs, about_motion, about_notions, about_proposition, about_runs
-from robustness.paper.audit.about_runs import battery, counted
+from robustness.paper.audit.about_runs import battery, runs_in_words
 from robustness.paper.audit.census import CensusRow, census
 from robustness.paper.audit.claims import PLACES, Claim, Outcome
 from robustness.paper.lemma_audit import Finding
 from robustness.paper.lemma_audit import audit as audit_of_lemma_1
+from robustness.spelled import counted
 
 __all__ = ["CLAIMS", "census_table", "write"]
 
@@ -59,7 +60,7 @@ def write(folder: Path, executor: Any = None) -> None:
         census=census_table(found),
         free=sum(map(len, runs.values())),
         played=_PLAYED,
-        runs=counted(_sum([counts for each in runs.values() for counts in each])),
+        runs=runs_in_words(_sum([counts for each in runs.values() for counts in each])),
         by_row="\n".join(_runs_row(row, counts) for row, counts in runs.items()),
         figures="\n\n".join(drawn),
     )
@@ -100,7 +101,7 @@ def _lemma_row(undirected: Finding, directed: Finding) -> str:
 def _word(finding: Finding) -> str:
     if finding.counterexample is None:
         return "holds"
-    return f"**fails** on {finding.counterexample.n} nodes: {finding.reason}"
+    return f"**fails** on {counted(finding.counterexample.n, 'node')}: {finding.reason}"
 
 
 def _figure(folder: Path, number: int, claim: Claim, outcome: Outcome) -> str:
