@@ -41,7 +41,7 @@ class Replay(Walk[S]):
     opcodes = 10
 
     def __init__(self, question: Question, n: int, body: Blocks | Stream) -> None:
-        super().__init__(n, body)
+        super().__init__(question, n, body)
         self.question = question
 
     def settle(self, state: S) -> None:

@@ -29,7 +29,7 @@ class _Replay(Walk[Roles]):
     opcodes = 8
 
     def __init__(self, threat: Threat, n: int, body: Blocks | Stream) -> None:
-        super().__init__(n, body)
+        super().__init__(threat, n, body)
         self.threat = threat
 
     def settle(self, state: Roles) -> None:

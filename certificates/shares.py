@@ -22,7 +22,8 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from certificates.envelope import shown
-from certificates.errors import Misuse, RejectedCertificate
+from certificates.errors import MalformedCertificate, Misuse, RejectedCertificate
+from certificates.masks import MAX_LOOKS
 from certificates.questions import format_of
 from certificates.stream import Blocks, Stream
 from certificates.tolerance import FORMATS as TOLERANCE_FORMATS
@@ -46,6 +47,11 @@ class Share:
     count: int
     #: Of the tree nodes in ``claim``, those in the share's own trees.
     own_nodes: int
+    #: Looks at nodes that were made, and those of them for the share's own trees.
+    looks: int
+    own_looks: int
+    #: The trees that it met the end of, as :class:`certificates.stream.Stream` lists them: no part of what is proved.
+    trees: tuple[tuple[int, int], ...]
 
 
 def verify_share(graph_bytes: bytes, certificate_bytes: Blocks, index: Index, number: int, count: int) -> Share:
@@ -64,6 +70,7 @@ def verify_share(graph_bytes: bytes, certificate_bytes: Blocks, index: Index, nu
         raise Misuse("an index is ascending trees, none inside another, and shares are numbered from 0")
     sha256 = hashlib.sha256()
     stream = Stream(_hashed(Stream.of(certificate_bytes), sha256))
+    stream.trees = []
     loads = [0] * count
     for start, length in sorted(trees, key=lambda tree: (-tree[1], tree)):
         owner = loads.index(min(loads))
@@ -77,7 +84,8 @@ def verify_share(graph_bytes: bytes, certificate_bytes: Blocks, index: Index, nu
         claim = prove_tolerance(graph_bytes, stream)
     else:
         raise Misuse(f"a certificate of the format {shown(found)} has no shares")
-    return Share(claim, sha256.hexdigest(), trees, number, count, stream.own_nodes)
+    looks = stream.looks, stream.own_looks
+    return Share(claim, sha256.hexdigest(), trees, number, count, stream.own_nodes, *looks, tuple(stream.trees))
 
 
 def together(shares: Sequence[Share]) -> VerifiedClaim | VerifiedToleranceClaim:
@@ -87,6 +95,8 @@ def together(shares: Sequence[Share]) -> VerifiedClaim | VerifiedToleranceClaim:
     ------
     RejectedCertificate
         When they are not all the shares of one certificate by one index.
+    MalformedCertificate
+        When they took more looks at nodes together than one verifier would take upon itself.
     """
     claims = {replace(share.claim, tree_nodes=0) for share in shares}
     same = {(share.sha256, share.index, share.count) for share in shares}
@@ -94,8 +104,11 @@ def together(shares: Sequence[Share]) -> VerifiedClaim | VerifiedToleranceClaim:
         raise RejectedCertificate("these are not all the shares of one certificate")
     (claim,) = claims
     top = shares[0].claim.tree_nodes - shares[0].own_nodes
-    own = {share.number: share.own_nodes for share in shares}
-    return replace(claim, tree_nodes=top + sum(own.values()))
+    own = {share.number: (share.own_nodes, share.own_looks) for share in shares}
+    nodes, looks = map(sum, zip(*own.values(), strict=True))
+    if shares[0].looks - shares[0].own_looks + looks > MAX_LOOKS:
+        raise MalformedCertificate(f"a refutation may ask for at most {MAX_LOOKS} looks at nodes")
+    return replace(claim, tree_nodes=top + nodes)
 
 
 def _hashed(blocks: Stream, sha256: hashlib._Hash) -> Iterator[bytes]:

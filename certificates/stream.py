@@ -30,8 +30,8 @@ class Stream:
         #: For each tree that a share is responsible for, by the place where it begins: its length, and whether that
         #: share is this one. Empty but for :mod:`certificates.shares`.
         self.share: dict[int, tuple[int, bool]] = {}
-        #: Tree nodes in the trees of this share.
-        self.own_nodes = 0
+        #: Tree nodes in the trees of this share, and looks at nodes that they took; ``looks``: of all that it walked.
+        self.own_nodes = self.own_looks = self.looks = 0
         #: Beginnings and lengths of trees that were walked through, for those who list them; short ones are left out.
         self.trees: list[tuple[int, int]] | None = None
         self._block = b""

@@ -12,7 +12,7 @@ from abc import ABC, abstractmethod
 from typing import Generic, TypeVar
 
 from certificates.errors import RejectedCertificate
-from certificates.masks import Contradiction
+from certificates.masks import Contradiction, Network
 from certificates.stream import Blocks, Stream
 
 __all__ = ["BRANCH", "EXCLUDE", "PROPAGATE", "ROOT", "Walk"]
@@ -29,8 +29,8 @@ class Walk(ABC, Generic[S]):
     #: The number of opcodes.
     opcodes: int
 
-    def __init__(self, n: int, body: Blocks | Stream) -> None:
-        self.n = n
+    def __init__(self, network: Network, n: int, body: Blocks | Stream) -> None:
+        self.network, self.n = network, n
         self.body = Stream.of(body)
         self.share = self.body.share
         self.nodes = 0
@@ -56,6 +56,7 @@ class Walk(ABC, Generic[S]):
         self.tree(state, symmetric=True)
         if not self.body.is_over():
             raise self.reject(f"{self.body.left()} bytes follow the complete refutation")
+        self.body.looks = self.network.looks
         return self.nodes
 
     def tree(self, state: S, symmetric: bool) -> None:
@@ -101,9 +102,10 @@ class Walk(ABC, Generic[S]):
         start, (length, is_own) = self.body.place, self.share.pop(self.body.place)
         self.nodes -= 1
         if is_own:
-            before = self.nodes
+            nodes, looks = self.nodes, self.network.looks
             self.tree(state, symmetric)
-            self.body.own_nodes += self.nodes - before
+            self.body.own_nodes += self.nodes - nodes
+            self.body.own_looks += self.network.looks - looks
         else:
             self.body.skip(length)
         if self.body.place != start + length:

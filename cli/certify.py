@@ -71,7 +71,8 @@ def command(
     """Decide whether GRAPH is (R,S)-robust and write a certificate of the answer.
 
     The certificate proves either verdict to anybody: 'robustness verify GRAPH FILE', or 'python -m certificates
-    verify', which needs nothing but Python. It has been verified before it is written. Exit code 0 robust, 10 not
+    verify', which needs nothing but Python. It has been verified before it is written, by N processes with --jobs N or
+    --cluster local:N. Exit code 0 robust, 10 not
     robust, 30 undecided (nothing is written).
     """
     from certificates.file_bytes import certificate_blocks

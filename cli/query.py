@@ -45,6 +45,11 @@ def joined_cluster(address: str) -> Any:
     return click.get_current_context().with_resource(opened_cluster(address))
 
 
+def _processes_here(cluster: str | None) -> int:
+    """Return how many processors of this machine were given to a cluster that is open: the N of local:N."""
+    return int(cluster.removeprefix("local:")) if cluster is not None and cluster.startswith("local:") else 0
+
+
 @dataclass(frozen=True, slots=True)
 class Query:
     """The values of the common options.
@@ -58,7 +63,7 @@ class Query:
     timeout : float or None
         Seconds; what is not decided by then is undecided.
     jobs, seed : int
-        Threads; the seed of every random choice.
+        Threads, and processes that verify a long proof; the seed of every random choice.
     executor : distributed.Client or None
         Who solves the cubes of an exact search, for the commands with --cluster.
     state : Path or None
@@ -119,6 +124,7 @@ def query_options(
             **own: Any,
         ) -> Any:
             executor = None if cluster is None else joined_cluster(cluster)
+            jobs = max(jobs, _processes_here(cluster))
             return command(*arguments, Query(as_json, algorithm, timeout, jobs, seed, executor, cubes), **own)
 
         wrapped: Callable[..., Any] = speaking(with_query)

@@ -59,7 +59,7 @@ SCHEMA = "robustness/verify/1"
     default=1,
     show_default=True,
     metavar="N",
-    help="Processes, for a long refutation that 'certify --jobs' or '--cluster' wrote with its FILE.cubes.",
+    help="Processes, for a long refutation that 'certify' wrote with its FILE.cubes.",
 )
 @json_option
 @speaking

@@ -1,29 +1,30 @@
 """Verifying a long refutation by several processes, each of which runs the kernel on some of its trees.
 
-The trees that can be verified apart stand in a file of their own beside the certificate, ``FILE.cubes``, which
-certify writes when it has verified the whole: a hint that the kernel does not trust (:mod:`certificates.shares`).
-When anything but a verified claim comes of the shares, the whole is verified by one process, whose verdict is the one
-that counts.
+Which trees can be verified apart is a hint that the kernel does not trust (:mod:`certificates.shares`). certify has it
+from the search, of the parts that were handed on; verify from a file beside the certificate, ``FILE.cubes``, which
+certify writes when it has verified the whole. When anything but a verified claim comes of the shares, the whole is
+verified by one process, whose verdict is the one that counts.
 """
 
 from __future__ import annotations
 
 import json
-import os
 import pickle
 import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from contextlib import suppress
 from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from certificates import RejectedCertificate, VerifiedClaim, VerifiedToleranceClaim, verify
+from certificates import CertificateError, MalformedCertificate, VerifiedClaim, VerifiedToleranceClaim, verify
 from certificates.file_bytes import certificate_blocks
-from certificates.shares import Share, together, verify_share
+from certificates.shares import Share, together
 from certificates.stream import Stream
+from robustness.errors import Undecided
 from robustness.files.writing import replace_file, write_certificate
 from robustness.limits import Limits, Progress
 from robustness.transcripts import Transcript
@@ -36,18 +37,54 @@ _FORMAT = "robustness/cubes-index/1"
 #: A body of fewer bytes is verified in a second or two; the others are cut into trees of one part in so many at most.
 _WORTH_IT, _PARTS = 2**17, 16
 
+#: Seconds between two looks at how far the processes are; bytes that they are told at a time.
+_LOOK, _BLOCK = 0.2, 2**16
+
 Cubes = tuple[tuple[int, int], ...]
+
+#: Gives the bytes of a certificate, from the beginning, and tells how much of how much has been taken.
+_Source = Callable[[Callable[[int, int], object]], Iterator[bytes]]
 
 
 def verify_listing(
     graph_bytes: bytes, header: bytes, body: bytes | Transcript, limits: Limits
 ) -> tuple[VerifiedClaim, Cubes]:
-    """Return what the kernel proves from a certificate, and the trees in it that can be verified apart."""
+    """Return what the kernel proves from a certificate, and the trees in it that can be verified apart.
+
+    A transcript is shared out to as many processes as ``limits`` has threads, by the trees that the search handed on.
+    What is returned does not depend on that.
+
+    Raises
+    ------
+    Undecided
+        When the time limit passes over a long transcript.
+    """
     size = len(header) + len(body)
-    stream = Stream(_telling(chain((header,), _blocks(body)), size, limits.progress))
+    parts = _chosen(body.trees, len(body)) if isinstance(body, Transcript) else ()
+    if limits.jobs > 1 and parts:
+
+        def blocks(told: Callable[[int, int], object]) -> Iterator[bytes]:
+            return _telling(chain((header,), _blocks(body)), size, told)
+
+        def tell(words: str) -> None:
+            _keep_the_limit(limits)
+            if limits.progress is not None:
+                limits.progress(Progress(0, words))
+
+        shares = _verified_shares(graph_bytes, blocks, parts, limits.jobs, tell)
+        claim = _together(shares)
+        if isinstance(claim, VerifiedClaim):
+            return claim, _chosen({tree for share in shares for tree in share.trees}, len(body))
+
+    def look(done: int, size: int) -> None:
+        if done > _WORTH_IT:
+            _keep_the_limit(limits)
+        if limits.progress is not None:
+            limits.progress(Progress(0, f"{100 * done // size} % of the certificate verified"))
+
+    stream = Stream(_telling(chain((header,), _blocks(body)), size, look))
     stream.trees = []
-    claim = verify(graph_bytes, stream)
-    return claim, _chosen(stream.trees, len(body))
+    return verify(graph_bytes, stream), _chosen(stream.trees, len(body))
 
 
 def write_with_cubes(output: Path, header: bytes, body: bytes | Transcript, cubes: Cubes) -> dict[str, Any]:
@@ -82,7 +119,7 @@ def verify_in_parallel(
     ----------
     graph_bytes : bytes
     certificate : Path
-        Each process reads the file for itself.
+        It is read once for each process.
     cubes : tuple of (int, int)
         As :func:`cubes_beside` finds them.
     jobs : int
@@ -90,63 +127,119 @@ def verify_in_parallel(
     tell : callable
         Gets a few words on how far the work is.
     """
-    count = min(jobs, max(1, len(cubes)))
-    running: list[subprocess.Popen[bytes]] = []
-    is_over = threading.Event()
 
-    def share(number: int) -> Share | None:
-        asked = pickle.dumps((sys.path, os.getpid(), graph_bytes, str(certificate), cubes, number, count))
-        if is_over.is_set():
-            return None
-        with subprocess.Popen(  # noqa: S603  # our own interpreter and program
-            [sys.executable, "-c", _CHILD], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
-        ) as process:
-            running.append(process)
-            said, _ = process.communicate(asked)
-        found = pickle.loads(said) if process.returncode == 0 else None  # noqa: S301  # said by our own process
-        return found if isinstance(found, Share) else None
+    def blocks(told: Callable[[int, int], object]) -> Iterator[bytes]:
+        return certificate_blocks(certificate, told)
 
-    shares: list[Share] = []
+    return _together(_verified_shares(graph_bytes, blocks, cubes, jobs, tell))
+
+
+def _together(shares: list[Share]) -> VerifiedClaim | VerifiedToleranceClaim | None:
     try:
-        with ThreadPoolExecutor(jobs) as pool:
-            try:
-                for future in as_completed([pool.submit(share, number) for number in range(count)]):
-                    found = future.result()
-                    if found is None:
-                        return None
-                    shares.append(found)
-                    tell(f"{100 * len(shares) // count} % of the certificate verified, by {jobs} processes")
-            finally:
-                is_over.set()
-                for process in running:
-                    process.kill()
         return together(shares)
-    except (OSError, RejectedCertificate):
+    except CertificateError:
         return None
 
 
-#: What a process does: it finds our packages where its parent does.
+def _verified_shares(
+    graph_bytes: bytes, blocks: _Source, cubes: Cubes, jobs: int, tell: Callable[[str], object]
+) -> list[Share]:
+    """Return the shares of a certificate, each accepted by a process of its own; fewer when one was not."""
+    count = min(jobs, max(1, len(cubes)))
+    part_done = [0.0] * count
+
+    def share(number: int) -> Share | None:
+        def told(done: int, size: int) -> None:
+            part_done[number] = done / size if size else 0.0
+
+        asked = pickle.dumps((sys.path, (graph_bytes, cubes, number, count)))
+        return children.answer(chain((asked,), blocks(told)))
+
+    children = _Children()
+    shares: list[Share] = []
+    with ThreadPoolExecutor(count) as pool:
+        try:
+            waiting = {pool.submit(share, number) for number in range(count)}
+            while waiting:
+                done, waiting = wait(waiting, _LOOK, FIRST_COMPLETED)
+                for future in done:
+                    found = future.result()
+                    if found is None:
+                        return []
+                    shares.append(found)
+                part = sum(part_done) / count if waiting else 1.0
+                tell(f"{int(100 * part)} % of the certificate verified, by {jobs} processes")
+        except (OSError, MalformedCertificate, RuntimeError):  # what is read, or too few threads: the whole says it
+            return []
+        finally:
+            children.end()
+    return shares
+
+
+#: What a process does: it finds our packages where its parent does. When the parent is gone its input ends.
 _CHILD = """
 import pickle, sys
-asked = pickle.load(sys.stdin.buffer)
-sys.path[:] = asked[0]
-from robustness.parallel_verification import answer_parent
-answer_parent(*asked[1:])
+path, asked = pickle.load(sys.stdin.buffer)
+sys.path[:] = path
+from certificates.shares import verify_share
+graph, *which = asked
+share = verify_share(graph, iter(lambda: sys.stdin.buffer.read(65536), b""), *which)
+sys.stdout.buffer.write(pickle.dumps(share))
 """
 
 
-def answer_parent(parent: int, graph_bytes: bytes, path: str, cubes: Cubes, number: int, count: int) -> None:
-    """Verify one share and write it to the standard output; end when the parent is gone."""
+class _Children:
+    """The processes of one verification, which end together."""
 
-    def look(done: int, size: int) -> None:
-        if os.name == "posix" and os.getppid() != parent:
-            os._exit(1)
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._running: list[subprocess.Popen[bytes]] = []
+        self._is_over = False
 
-    try:
-        share = verify_share(graph_bytes, certificate_blocks(path, look), cubes, number, count)
-    except Exception:  # noqa: BLE001  # whatever it is: one process verifies the whole, and says it
-        sys.exit(1)
-    sys.stdout.buffer.write(pickle.dumps(share))
+    def end(self) -> None:
+        """End all, and whatever is started from now on."""
+        with self._lock:
+            self._is_over = True
+            for process in self._running:
+                process.kill()
+
+    def answer(self, told: Iterable[bytes]) -> Share | None:
+        """Return the share that a process accepts which is told this; None when it accepts none."""
+        if not sys.executable or getattr(sys, "frozen", False):  # no Python that could be started
+            return None
+        with subprocess.Popen(  # noqa: S603  # our own interpreter and program
+            [sys.executable, "-I", "-c", _CHILD],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            bufsize=_BLOCK,
+        ) as process:
+            with self._lock:
+                self._running.append(process)
+                if self._is_over:
+                    process.kill()
+            try:
+                said = _conversation(process, told)
+            except BaseException:
+                process.kill()
+                raise
+        try:
+            found = pickle.loads(said) if process.returncode == 0 else None  # noqa: S301  # said by our own process
+        except Exception:  # noqa: BLE001  # something else that Python starts with has written there
+            return None
+        return found if isinstance(found, Share) else None
+
+
+def _conversation(process: subprocess.Popen[bytes], told: Iterable[bytes]) -> bytes:
+    """Tell a process something, and return what it says when it has heard all; one that has ended hears nothing."""
+    if process.stdin is None or process.stdout is None:
+        return b""
+    with suppress(BrokenPipeError):
+        for block in told:
+            process.stdin.write(block)
+    with suppress(BrokenPipeError):
+        process.stdin.close()
+    return process.stdout.read()
 
 
 def _index_of(certificate: Path) -> Path:
@@ -157,16 +250,20 @@ def _blocks(body: bytes | Transcript) -> Iterable[bytes]:
     return (body,) if isinstance(body, bytes) else body
 
 
-def _telling(blocks: Iterable[bytes], size: int, progress: Callable[[Progress], None] | None) -> Iterator[bytes]:
+def _telling(blocks: Iterable[bytes], size: int, told: Callable[[int, int], object]) -> Iterator[bytes]:
     done = 0
     for block in blocks:
-        if progress is not None:
-            progress(Progress(0, f"{100 * done // size} % of the certificate verified"))
+        told(done, size)
         done += len(block)
         yield block
 
 
-def _chosen(trees: list[tuple[int, int]], size: int) -> Cubes:
+def _keep_the_limit(limits: Limits) -> None:
+    if limits.expired():
+        raise Undecided("the time limit was reached before the proof was verified")
+
+
+def _chosen(trees: Iterable[tuple[int, int]], size: int) -> Cubes:
     """Return trees to verify apart: the largest of those that are no more than a part; none of a short transcript."""
     chosen: list[tuple[int, int]] = []
     end = 0

@@ -77,21 +77,38 @@ class Branch(Protocol):
     """A part of a search: its transcript is that of its parts, in this order."""
 
     @property
+    def is_tree(self) -> bool:
+        """Whether it is all that one state stands for: one tree of the proof."""
+
+    @property
     def parts(self) -> Sequence[Piece | Branch]:
         """Pieces, and what was handed on."""
 
 
 class Transcript:
-    """The transcript of a complete search, ``root`` being the whole of it: read in blocks, with a length."""
+    """The transcript of a complete search, ``root`` being the whole of it: read in blocks, with a length.
+
+    Attributes
+    ----------
+    trees : list of (int, int)
+        Where in it each branch that is one tree begins, and its length.
+    """
 
     def __init__(self, root: Branch) -> None:
         self.pieces: list[Piece] = []
-        waiting: list[Piece | Branch] = [root]
+        self.trees: list[tuple[int, int]] = []
+        place = 0
+        waiting: list[Piece | Branch | int] = [root]
         while waiting:
             part = waiting.pop()
-            if isinstance(part, Piece):
+            if isinstance(part, int):  # where a tree began whose parts have all been seen
+                self.trees.append((part, place - part))
+            elif isinstance(part, Piece):
                 self.pieces.append(part)
+                place += part.size
             else:
+                if part.is_tree:
+                    waiting.append(place)
                 waiting.extend(reversed(part.parts))
 
     def __reduce__(self) -> tuple[Callable[[bytes], Transcript], tuple[bytes]]:
@@ -119,6 +136,7 @@ class _Whole:
     """A search that came in one piece."""
 
     parts: tuple[Piece]
+    is_tree: bool = False
 
 
 def _restored(data: bytes) -> Transcript:

@@ -5,8 +5,12 @@ from __future__ import annotations
 import gzip
 import json
 import pickle
+import random
+import subprocess
+import sys
 import threading
 import tracemalloc
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -17,16 +21,21 @@ from click.testing import CliRunner, Result
 import robustness as rb
 from certificates import stream, verify
 from certificates.file_bytes import certificate_blocks
+from certificates.shares import together, verify_share
 from cli.main import robustness as program
 from robustness import parallel_verification
+from robustness.cubes import spreading
 from robustness.decision.algorithms import subset_search
 from robustness.evidence import Refutation
 from robustness.limits import Limits, Progress
 from robustness.parallel_verification import cubes_beside, verify_in_parallel
 from robustness.transcripts import Piece, Spool, Transcript
+from tests.certificates.forging import certificate
 
 FOUND = rb.Digraph.from_networkx(nx.gnp_random_graph(24, 0.5, seed=1))
 GRAPH = FOUND.canonical_bytes()
+#: 12-robust, by a refutation of 374,370 bytes.
+LONGER = rb.Digraph.from_networkx(nx.gnp_random_graph(45, 0.5, seed=2))
 
 
 @pytest.fixture
@@ -37,8 +46,9 @@ def long_already(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 class Parts:
-    def __init__(self, *parts: Any) -> None:
+    def __init__(self, *parts: Any, is_tree: bool = False) -> None:
         self.parts = parts
+        self.is_tree = is_tree
 
 
 def test_a_transcript_is_its_pieces_in_order_wherever_they_are_kept() -> None:
@@ -50,6 +60,13 @@ def test_a_transcript_is_its_pieces_in_order_wherever_they_are_kept() -> None:
     assert max(map(len, found)) <= 2**16
     restored = pickle.loads(pickle.dumps(found))  # noqa: S301  # our own
     assert bytes(restored) == bytes(found)
+
+
+def test_where_trees_are_in_a_transcript() -> None:
+    spool = Spool()
+    inner = Parts(spool.keep(b"cd"), Parts(is_tree=True), spool.keep(b"e"), is_tree=True)
+    found = Transcript(Parts(spool.keep(b"ab"), Parts(inner, spool.keep(b"f"), is_tree=True), Parts(spool.keep(b"g"))))
+    assert sorted(found.trees) == [(2, 3), (2, 4), (4, 0)]
 
 
 def test_threads_keep_pieces_at_the_same_time() -> None:
@@ -166,6 +183,124 @@ def test_the_command(tmp_path: Path, long_already: None) -> None:
     path.write_bytes(path.read_bytes()[:-1])
     damaged = run(["verify", str(graph), str(path), *expected])
     assert (damaged.exit_code, damaged.stderr.count("\n")) == (3, 1)
+
+
+@pytest.fixture(scope="module")
+def by_one(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The certificate that one process has verified."""
+    path = tmp_path_factory.mktemp("one") / "proof.cert"
+    rb.certify(LONGER, 12, output=path)
+    return path
+
+
+def by_two(path: Path, told: list[str] | None = None, executor: Any = None) -> rb.RobustnessResult:
+    def tell(progress: Progress) -> None:
+        if told is not None:
+            told.append(progress.note)
+
+    return rb.certify(LONGER, 12, jobs=2, output=path, progress=tell, executor=executor)
+
+
+def files(path: Path) -> list[bytes]:
+    return [path.read_bytes(), path.with_name(path.name + ".cubes").read_bytes()]
+
+
+@pytest.fixture
+def in_small_slices(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A search of a second is cut as one of minutes is."""
+    monkeypatch.setattr(subset_search, "_SLICE", 1e-3)
+    monkeypatch.setattr(spreading, "_FIRST_SLICE", 1e-2)
+    monkeypatch.setattr(spreading, "_LONGEST_SLICE", 2e-2)
+
+
+@pytest.mark.parametrize("is_spread", [False, True])
+def test_certify_verifies_by_several_processes(
+    is_spread: bool, by_one: Path, tmp_path: Path, in_small_slices: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The same files, byte for byte, without one process that verifies the whole."""
+    monkeypatch.setattr(parallel_verification, "verify", None)
+    told: list[str] = []
+    with ThreadPoolExecutor(2) as pool:
+        result = by_two(tmp_path / "proof.cert", told, pool if is_spread else None)
+    assert result.verdict is rb.Verdict.ROBUST
+    assert files(tmp_path / "proof.cert") == files(by_one)
+    assert "100 % of the certificate verified, by 2 processes" in told
+
+
+@pytest.mark.parametrize("jobs", [2, 3])
+def test_trees_that_a_search_notes_are_trees_of_the_proof(jobs: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whichever of them are taken for an index, the shares are accepted."""
+    monkeypatch.setattr(subset_search, "_SLICE", 1e-6)
+    draw, seen = random.Random(jobs), 0
+    for _ in range(30):
+        answer = subset_search.decide(FOUND, 7, 1, Limits.of(None, jobs), transcript=True)
+        assert isinstance(answer.evidence, Refutation)
+        transcript = answer.evidence.transcript
+        assert isinstance(transcript, Transcript)
+        trees = [tree for tree in transcript.trees if tree[1]]
+        index = parallel_verification._chosen(draw.sample(trees, draw.randint(1, len(trees))), 2**24)
+        data = certificate(FOUND, 7, 1, body=bytes(transcript))
+        shares = [verify_share(GRAPH, data, index, number, 2) for number in range(2)]
+        assert together(shares) == verify(GRAPH, data)
+        seen += len(index)
+    assert seen > 30  # more than one each
+
+
+def test_most_of_a_proof_is_in_trees_that_are_noted(in_small_slices: None) -> None:
+    answer = subset_search.decide(LONGER, 12, 1, Limits.of(None, 2), transcript=True)
+    assert isinstance(answer.evidence, Refutation)
+    transcript = answer.evidence.transcript
+    assert isinstance(transcript, Transcript)
+    chosen = parallel_verification._chosen(transcript.trees, len(transcript))
+    assert sum(length for _, length in chosen) > len(transcript) / 2
+
+
+CHILDREN = {
+    "it fails": "raise SystemExit(1)",
+    "it says something else": "print('hello')",
+    "it dies": "import os; os.abort()",
+}
+
+
+@pytest.mark.parametrize("child", CHILDREN.values(), ids=CHILDREN)
+def test_when_processes_prove_nothing_one_verifies_the_whole(
+    child: str, by_one: Path, tmp_path: Path, in_small_slices: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(parallel_verification, "_CHILD", child)
+    assert by_two(tmp_path / "proof.cert").verdict is rb.Verdict.ROBUST
+    assert files(tmp_path / "proof.cert") == files(by_one)
+
+
+def no_process(*arguments: Any, **options: Any) -> Any:
+    raise BlockingIOError(11, "Resource temporarily unavailable")
+
+
+@pytest.mark.parametrize("what", ["no program", "no process", "no tree"])
+def test_where_no_process_helps(
+    what: str, by_one: Path, tmp_path: Path, in_small_slices: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if what == "no program":
+        monkeypatch.setattr(sys, "executable", None)
+    elif what == "no process":
+        monkeypatch.setattr(subprocess, "Popen", no_process)
+    else:
+        lie = property(lambda transcript: [(5, 5000), (9000, 5000)], lambda transcript, trees: None)
+        monkeypatch.setattr(Transcript, "trees", lie, raising=False)
+    assert by_two(tmp_path / "proof.cert").verdict is rb.Verdict.ROBUST
+    assert files(tmp_path / "proof.cert") == files(by_one)
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_time_limit_holds_while_a_proof_is_verified(
+    jobs: int, tmp_path: Path, in_small_slices: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[str] = []
+    monkeypatch.setattr(Limits, "expired", lambda limits: any("verified" in note for note in told))
+    path = tmp_path / "proof.cert"
+    found = rb.certify(LONGER, 12, jobs=jobs, time_limit=600, output=path, progress=lambda each: told.append(each.note))
+    assert found.verdict is rb.Verdict.UNDECIDED
+    assert found.stats["reason"] == "the time limit was reached before the proof was verified"
+    assert not path.exists()
 
 
 def test_certify_tells_how_much_is_verified() -> None:

@@ -18,7 +18,7 @@ from contextlib import contextmanager, suppress
 from typing import Any, Protocol, TypeVar, runtime_checkable
 
 from robustness.cubes.solving import solve
-from robustness.errors import InvalidParameter, MissingExtra
+from robustness.errors import InvalidParameter, MissingExtra, Undecided
 
 __all__ = ["CubeExecutor", "cube_executor", "mapped", "opened_cluster", "require_executor"]
 
@@ -30,6 +30,10 @@ _STALE = 2.0
 
 #: Seconds that fetching a finished result may take; one whose worker has died meanwhile is made again.
 _FETCH = 30.0
+
+
+#: How often the workers of this machine are started before that is given up.
+_STARTS = 3
 
 
 @runtime_checkable
@@ -224,6 +228,8 @@ def opened_cluster(address: str) -> Iterator[Any]:
         For an address of another form, and for one where no scheduler answers.
     MissingExtra
         When ``distributed`` is not installed.
+    Undecided
+        When the processes of this machine cannot be started.
     """
     kind, _, rest = address.partition(":")
     is_local = kind == "local" and rest.isascii() and rest.isdigit() and int(rest) > 0
@@ -243,8 +249,20 @@ def opened_cluster(address: str) -> Iterator[Any]:
         with client:
             yield client
         return
-    local = distributed.LocalCluster(
-        n_workers=int(rest), threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
-    )
-    with local, distributed.Client(local) as client:
+    with _local_cluster(distributed, int(rest)) as local, distributed.Client(local) as client:
         yield client
+
+
+def _local_cluster(distributed: Any, count: int) -> Any:
+    """Return a cluster of processes on this machine; a start that fails, for a process was killed, is tried again."""
+    # Dask starts a server for its status even where none is wanted: at a port that is free, and for this machine alone.
+    status = {"dashboard": False, "dashboard_address": "127.0.0.1:0"}
+    why: Exception | None = None
+    for _ in range(_STARTS):
+        try:
+            return distributed.LocalCluster(
+                n_workers=count, threads_per_worker=1, processes=True, silence_logs=50, scheduler_kwargs=status
+            )
+        except (RuntimeError, OSError) as problem:
+            why = problem
+    raise Undecided(f"nothing is decided: local:{count} did not start ({why})")

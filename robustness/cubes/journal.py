@@ -124,28 +124,45 @@ class CubeJournal:
             is_whole = line.endswith(b"\n") and checksum == _checksum(text)
             if not is_whole and not line.endswith(b"\n") and number > 1:
                 break
-            content = json.loads(text) if is_whole else {}
-            if number == 1 and content.get("format") != _FORMAT:
+            content = _object(text) if is_whole else None
+            if number == 1 and (content or {}).get("format") != _FORMAT:
                 raise InvalidParameter(
                     f"{path} is no journal of cubes: name another file, or one that is not there yet"
                 )
-            if not is_whole:
+            if content is None or not self._is_taken(content):
                 raise InvalidParameter(
                     f"{path}, line {number}: damaged; delete this line to go on without what it says"
                 )
-            if content.get("question") == self._question:
-                self._take(content)
             ends += len(line)
         return ends
+
+    def _is_taken(self, content: dict[str, Any]) -> bool:
+        """Take what a line says if it is about the question; return False for a line that makes no sense."""
+        if content.get("question") == self._question:
+            try:
+                self._take(content)
+            except (KeyError, TypeError, ValueError, zlib.error):
+                return False
+        return True
 
     def _take(self, content: dict[str, Any]) -> None:
         rest = [Cube.from_wire((base64.b64decode(data), flags), self._words) for data, flags in content["rest"]]
         packed = base64.b64decode(content["transcript"])
         piece = self.spool.keep_packed(packed, len(zlib.decompress(packed))) if packed else None
-        entry: Entry = {"nodes": content["nodes"], "piece": piece, "rest": rest}
+        entry: Entry = {"nodes": int(content["nodes"]), "piece": piece, "rest": rest}
         if "pair" in content:
-            entry["pair"] = content["pair"]
-        self.entries.setdefault(content["cube"], entry)
+            first, second = content["pair"]
+            entry["pair"] = [int(i) for i in first], [int(i) for i in second]
+        self.entries.setdefault(str(content["cube"]), entry)
+
+
+def _object(text: bytes) -> dict[str, Any] | None:
+    """Return a JSON object, or None for anything else."""
+    try:
+        content = json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+    return content if isinstance(content, dict) else None
 
 
 def _checksum(text: bytes) -> bytes:

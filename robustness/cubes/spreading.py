@@ -72,6 +72,11 @@ class _Piece:
         return min(_FIRST_SLICE * 2.0**self.slices, _LONGEST_SLICE)
 
     @property
+    def is_tree(self) -> bool:
+        """Whether the cube is one state."""
+        return len(self.cube.symmetric) == 1
+
+    @property
     def parts(self) -> list[Piece | Branch]:
         """Its transcript, and what was left of it."""
         own: list[Piece | Branch] = [] if self.transcript is None else [self.transcript]

@@ -22,7 +22,7 @@ from robustness.decision.bounds.degree import robust_by_degree
 from robustness.decision.ladder import algorithm_rung, by_convention
 from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph, GraphLike
-from robustness.errors import InternalError, InvalidParameter
+from robustness.errors import InternalError, InvalidParameter, Undecided
 from robustness.evidence import Convention, DegreeRule, Evidence, Growth, Refutation, ViolatingPair
 from robustness.limits import Limits, Progress
 from robustness.parallel_verification import verify_listing, write_with_cubes
@@ -56,8 +56,11 @@ def certify(
 
     Parameters
     ----------
-    G, time_limit, jobs, seed, progress, executor, state
+    G, time_limit, seed, progress, executor, state
         As for :func:`robustness.check_rs_robustness`.
+    jobs : int
+        Threads, and processes of this machine that verify a long refutation
+        (:mod:`robustness.parallel_verification`): an executor is not trusted with that.
     r : int
         At least 1: that every graph is (0,s)-robust needs no proof.
     s : int
@@ -118,8 +121,9 @@ def certify_within(
     header = _header(graph, r, s, result.verdict, proof[0])
     try:
         claim, cubes = verify_listing(graph.canonical_bytes(), header, proof[1], limits)
-    except MalformedCertificate as problem:
-        reason = f"the proof is beyond what the kernel checks: {problem}"
+    except (MalformedCertificate, Undecided) as problem:
+        is_late = isinstance(problem, Undecided)
+        reason = str(problem) if is_late else f"the proof is beyond what the kernel checks: {problem}"
         if result.verdict is Verdict.NOT_ROBUST:  # the pair was re-checked: only its certificate cannot be written
             return replace(result, stats={**answer.stats, "reason": reason})
         return RobustnessResult.of(

@@ -16,6 +16,7 @@ from certificates import (
     RejectedCertificate,
     VerifiedClaim,
     VerifiedToleranceClaim,
+    shares,
     stream,
     verify,
     verify_any,
@@ -130,6 +131,31 @@ def test_the_owner_finds_a_tree_that_is_shorter_than_said(monkeypatch: pytest.Mo
         verify_share(GRAPH, PROOF, [(start, 100_000)], 1, 2)
 
 
+def test_trees_that_shares_list_are_those_of_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    draw = random.Random(6)
+    trees = trees_of(GRAPH, PROOF, monkeypatch)
+    for _ in range(30):
+        index = some_of(trees, draw)
+        parts = [verify_share(GRAPH, PROOF, index, number, 3) for number in range(3)]
+        assert sorted({tree for part in parts for tree in part.trees}) == trees
+
+
+def test_the_limit_of_work_holds_for_all_shares_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is too much for one verifier is too much for several, of which each does less."""
+    draw = random.Random(7)
+    trees = trees_of(GRAPH, PROOF, monkeypatch)
+    looks = verify_share(GRAPH, PROOF, [], 0, 1).looks
+    for limit, is_enough in ((looks - 1, False), (2 * looks, True)):
+        monkeypatch.setattr(shares, "MAX_LOOKS", limit)
+        for _ in range(10):
+            index = some_of(trees, draw)
+            if is_enough:
+                assert shared(GRAPH, PROOF, index, 4) == verify(GRAPH, PROOF)
+            else:
+                with pytest.raises(MalformedCertificate, match=f"at most {limit} looks"):
+                    shared(GRAPH, PROOF, index, 4)
+
+
 @pytest.mark.parametrize("index", [[(5, 0)], [(-1, 3)], [(5, 4), (8, 2)], [(9, 1), (5, 1)], [(5, -1)]])
 def test_misuse(index: list[tuple[int, int]]) -> None:
     with pytest.raises(Misuse, match="an index is"):
@@ -150,14 +176,14 @@ def test_a_share_alone_proves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     trees = trees_of(GRAPH, PROOF, monkeypatch)
     index = [tree for tree, other in pairwise(trees) if sum(tree) <= other[0]][:4]
     assert len(index) > 1
-    shares = [verify_share(GRAPH, PROOF, index, number, 2) for number in range(2)]
-    assert together(shares).r == 7
+    first, second = (verify_share(GRAPH, PROOF, index, number, 2) for number in range(2))
+    assert together([first, second]).r == 7
     others: list[list[Share]] = [
-        shares[:1],
-        [shares[0], replace(shares[1], index=())],
-        [shares[0], replace(shares[1], sha256="0")],
-        [shares[0], replace(shares[1], number=0)],
-        [replace(shares[0], claim=replace(shares[0].claim, s=2)), shares[1]],
+        [first],
+        [first, replace(second, index=())],
+        [first, replace(second, sha256="0")],
+        [first, replace(second, number=0)],
+        [replace(first, claim=replace(first.claim, s=2)), second],
         [],
     ]
     for each in others:

@@ -16,8 +16,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 
 import robustness as rb
+from cli.main import robustness as program
 from robustness.cubes import opened_cluster, software, spreading
 from robustness.evidence import Refutation
 from tests.cubes.instances import ENDLESS, LONG, MIDDLE, SMALL
@@ -205,3 +207,29 @@ def test_the_command(tmp_path: Path) -> None:
     bad = subprocess.run([*base, "check", str(small), "--cluster", "x"], capture_output=True, text=True, check=False)
     assert bad.returncode == 2
     assert "a cluster is tcp://HOST:PORT" in bad.stderr
+
+
+def test_a_cluster_whose_workers_are_killed_while_it_starts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is started again, and given up with a word: no worker that is killed at whatever moment ends in an error."""
+    begin, failures = distributed.LocalCluster, [RuntimeError("Nanny failed to start."), OSError("no more processes")]
+
+    def start(**options: Any) -> Any:
+        if failures:
+            raise failures.pop()
+        return begin(**options)
+
+    monkeypatch.setattr(distributed, "LocalCluster", start)
+    with opened_cluster("local:1") as client:
+        assert len(client.scheduler_info()["workers"]) == 1
+    failures += [RuntimeError("Nanny failed to start.")] * 3
+    with pytest.raises(rb.Undecided, match=r"local:1 did not start \(Nanny"), opened_cluster("local:1"):
+        pass
+    failures += [RuntimeError("Nanny failed to start.")] * 3
+    done = CliRunner().invoke(program, ["check", "topohub:sndlib/abilene", "-r", "1", "--cluster", "local:1"])
+    assert (done.exit_code, "Traceback" in done.output) == (30, False)
+
+
+def test_two_local_clusters_at_a_time_say_nothing_of_ports(recwarn: pytest.WarningsRecorder) -> None:
+    with opened_cluster("local:1"), opened_cluster("local:1"):
+        pass
+    assert not [each for each in recwarn if "already in use" in str(each.message)]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
 import shutil
 import signal
@@ -9,6 +11,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import networkx as nx
 import pytest
@@ -61,6 +64,42 @@ def test_a_damaged_line_is_refused(half: Path) -> None:
     lines[2] = lines[2].replace(b'"nodes":', b'"nodes":1', 1)
     half.write_bytes(b"".join(lines))
     with pytest.raises(rb.InvalidParameter, match="line 3: damaged; delete this line"):
+        rb.check_rs_robustness(*SMALL, state=half)
+
+
+def checked(content: str) -> bytes:
+    return hashlib.sha256(content.encode()).hexdigest()[:16].encode() + b" " + content.encode() + b"\n"
+
+
+SENSELESS = {
+    "rest": {"rest": [["AAAA", "1"]]},
+    "flags": {"rest": [["", ""]]},
+    "what is left": {"rest": 5},
+    "nodes": {"nodes": "many"},
+    "transcript": {"transcript": "AAAA"},
+    "alphabet": {"transcript": "é"},
+    "pair": {"pair": [[1], "x"]},
+    "one side": {"pair": [[1]]},
+}
+
+
+@pytest.mark.parametrize("change", SENSELESS.values(), ids=SENSELESS)
+def test_a_line_that_makes_no_sense_is_refused_though_its_checksum_is_right(change: dict[str, Any], half: Path) -> None:
+    lines = half.read_bytes().splitlines(keepends=True)[:-1]
+    content = json.loads(lines[2].partition(b" ")[2]) | change
+    half.write_bytes(b"".join([*lines[:2], checked(json.dumps(content)), *lines[3:]]))
+    with pytest.raises(rb.InvalidParameter, match="line 3: damaged; delete this line"):
+        rb.certify(*SMALL, evidence="refutation", state=half)
+
+
+@pytest.mark.parametrize("text", ["[]", "3", "{", "null", "[" * 100_000])
+def test_a_line_that_is_no_object_is_refused(text: str, half: Path) -> None:
+    whole = half.read_bytes()
+    half.write_bytes(whole[: whole.rindex(b"\n") + 1] + checked(text))
+    with pytest.raises(rb.InvalidParameter, match="damaged; delete this line"):
+        rb.check_rs_robustness(*SMALL, state=half)
+    half.write_bytes(checked(text))
+    with pytest.raises(rb.InvalidParameter, match="is no journal of cubes"):
         rb.check_rs_robustness(*SMALL, state=half)
 
 

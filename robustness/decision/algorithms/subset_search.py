@@ -55,20 +55,27 @@ _Words = npt.NDArray[np.uint64]
 #: A slice of the search aims at this many seconds between two looks at the clock, the stop flag and idle threads.
 _SLICE = 0.02
 
+#: Trees that are noted at most in each slice, when they are recorded.
+_NOTED = 4
+
 #: Masks take n * n / 8 bytes; beyond this many nodes the search is not the right tool.
 MOST_NODES = 20_000
 
 
 @dataclass(slots=True)
-class Cube:
-    """A subproblem: a state that has not been propagated, and whether it is still symmetric in the two sides.
+class Tree:
+    """What refutes one state, in the order of the proof: pieces of the transcript, and trees within."""
 
-    ``parts`` receives its refutation, in the order of the proof: pieces of the transcript, and cubes handed on.
-    """
+    parts: list[Piece | Branch] = field(default_factory=list, kw_only=True)
+    is_tree: bool = field(default=True, kw_only=True)
+
+
+@dataclass(slots=True)
+class Cube(Tree):
+    """A subproblem: a state that has not been propagated, and whether it is still symmetric in the two sides."""
 
     state: _Words
     symmetric: bool
-    parts: list[Piece | Branch] = field(default_factory=list)
 
 
 def decide(
@@ -213,6 +220,7 @@ class _Search:
             rules.buffer, rules.place = np.empty(32 * n * n + 4096 + 2**16, np.uint8), 0
         search = Search(rules, self.look_ahead)
         search.counters = self.counters[number]
+        open_trees: list[tuple[int, Tree]] = [(-1, cube)]
         np.asarray(search.stack)[0] = cube.state
         np.asarray(search.table)[0] = (1, cube.symmetric, 0)
         quota = 1
@@ -221,13 +229,13 @@ class _Search:
             status = search.run(granted)
             self._return(granted - (int(self.counters[number, NODES]) - before))
             if status in (CLOSED, FLUSH, DONATED):
-                self._take_transcript(cube, rules)
+                self._take_transcript(open_trees[-1][1], rules)
             if status == PAUSED:
                 quota = _adjusted(quota, time.monotonic() - begun)
-            if self._is_over(status, cube, search, number):
+            if self._is_over(status, cube, search, number, open_trees):
                 return
 
-    def _is_over(self, status: int, cube: Cube, search: Any, number: int) -> bool:
+    def _is_over(self, status: int, cube: Cube, search: Any, number: int, open_trees: list[tuple[int, Tree]]) -> bool:
         """Act on why the kernel returned; return whether the cube is done with."""
         if status == CLOSED:
             return True
@@ -239,22 +247,36 @@ class _Search:
             search.stack = np.concatenate([stack, np.zeros_like(stack)])
             search.table = np.concatenate([table, np.zeros_like(table)])
         elif status == DONATED:
-            cube.parts.append(self._given[id(cube), search.level])
-            np.asarray(search.table)[search.level, GIVEN] = 0
-            search.level -= 1
-            return bool(search.level < 0)
+            return self._come_back(cube, search, open_trees)
         elif status == PAUSED:
             if self._must_stop(number):
                 return True
-            self._donate(cube, np.asarray(search.stack), np.asarray(search.table), search.level)
+            if self.limits.jobs > 1:
+                self._donate(cube, np.asarray(search.stack), np.asarray(search.table), search.level)
+                self._note(np.asarray(search.table), search.level)
         elif status != FLUSH:
             raise InternalError(f"the search kernel stopped with status {status}: please report")
         return False
 
-    def _take_transcript(self, cube: Cube, rules: Any) -> None:
-        """Move what the kernel has written to the cube."""
+    def _come_back(self, cube: Cube, search: Any, open_trees: list[tuple[int, Tree]]) -> bool:
+        """Go on from a level that was handed on or noted, which ends all trees above it; return whether all is done."""
+        level = int(search.level)
+        np.asarray(search.table)[level, GIVEN] = 0
+        while open_trees[-1][0] > level:
+            open_trees.pop()
+        given = self._given.pop((id(cube), level), None)
+        tree = given or Tree()
+        open_trees[-1][1].parts.append(tree)
+        if given is None:
+            open_trees.append((level, tree))
+            return False
+        search.level -= 1
+        return level == 0
+
+    def _take_transcript(self, tree: Tree, rules: Any) -> None:
+        """Move what the kernel has written to the tree that it is about."""
         if self.transcript:
-            cube.parts.append(self.spool.keep(np.asarray(rules.buffer)[: rules.place].tobytes()))
+            tree.parts.append(self.spool.keep(np.asarray(rules.buffer)[: rules.place].tobytes()))
             rules.place = 0
 
     def _granted(self, quota: int) -> int:
@@ -276,10 +298,10 @@ class _Search:
     def _donate(self, cube: Cube, stack: _Words, table: npt.NDArray[np.int64], level: int) -> None:
         """Hand the shallowest pending subproblem to an idle thread, if there is one."""
         with self.lock:
-            if self.limits.jobs == 1 or self.queue or self.busy >= self.limits.jobs:
+            if self.queue or self.busy >= self.limits.jobs:
                 return
             for k in range(level):
-                if table[k, PENDING] and not table[k, GIVEN]:
+                if table[k, PENDING] and (id(cube), k) not in self._given:
                     given = Cube(stack[k].copy(), bool(table[k, SYMMETRIC]))
                     table[k, GIVEN] = 1
                     self._given[id(cube), k] = given
@@ -287,6 +309,12 @@ class _Search:
                     self.cubes += 1
                     self.lock.notify_all()
                     return
+
+    def _note(self, table: npt.NDArray[np.int64], level: int) -> None:
+        """Stop at a few more of the shallowest levels when they are come to: trees that can be verified apart."""
+        if self.transcript:
+            fresh = np.flatnonzero(table[:level, PENDING] & ~table[:level, GIVEN] & 1)
+            table[fresh[:_NOTED], GIVEN] = 1
 
     def _stop(self, *, pair: Pair | None = None, reason: str = "") -> None:
         with self.lock:
