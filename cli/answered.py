@@ -161,11 +161,11 @@ def tell(ctx: click.Context, console: Console, query: Query, schema: str, answer
         console.error(message)
         console.error_document(code, message)
         ctx.exit(code)
-    _keep(console, query, mended, kept)
     if query.as_json:
         console.document(schema, answered.document())
     else:
         console.answer(answered.lines())
+    _keep(console, query, mended, kept)
     if answered.is_interrupted:
         console.error("interrupted: what is printed holds, nothing else is claimed")
     ctx.exit(code)

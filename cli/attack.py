@@ -10,7 +10,7 @@ import click
 
 from .choices import THREAT_MODEL_NAMES
 from .exit_codes import ExitCode
-from .options import graph_argument, load_graph
+from .options import ReadingCommand, graph_argument, load_graph
 from .output import Console, ProgressLine, graph_document
 from .query import Query, query_options
 
@@ -26,7 +26,7 @@ SCHEMA = "robustness/attack-result/1"
 _STEPS = 12
 
 
-@click.command("attack")
+@click.command("attack", cls=ReadingCommand, short_help="Find an attack of F nodes that splits GRAPH and carry it out.")
 @graph_argument
 @click.option(
     "-f", "f", type=click.IntRange(min=0), metavar="F", default=1, show_default=True, help="How many nodes may lie."
@@ -41,9 +41,12 @@ _STEPS = 12
 @click.option(
     "-T", "--sampling-period", "period", type=float, metavar="T", help="With these three: is agreement promised ..."
 )
-@click.option("--alpha", type=float, metavar="A", help="... for nodes with this gain ...  [default: 1.5/T]")
+@click.option("--alpha", type=float, metavar="A", help="... for nodes with this gain, 1.5/T unless given, ...")
 @click.option(
-    "--sigma", type=float, metavar="S", help="... whose kept weights add up to at most this?  [default: weights 1/d]"
+    "--sigma",
+    type=float,
+    metavar="S",
+    help="... whose kept weights, 1/d unless given, add up to at most this?",
 )
 @click.option(
     "--steps",
@@ -92,9 +95,6 @@ def command(
             return found
 
         found = query.wait_for(work, line)
-    if found.attack is not None and output is not None:
-        replace_file(output, (json.dumps(found.attack.as_dict(), indent=1) + "\n").encode())
-        console.talk(f"wrote {output}")
     if query.as_json:
         attack = None if found.attack is None else found.attack.as_dict()
         content = {"f": f, "model": model, "outcome": found.outcome, "reason": found.reason, "attack": attack}
@@ -102,6 +102,9 @@ def command(
     else:
         color = {"agreement": "green", "split": "red", "undecided": "yellow"}[found.outcome]
         console.result(f"{click.style(found.outcome + ':', fg=color, bold=True)} {found.reason}")
+    if found.attack is not None and output is not None:
+        replace_file(output, (json.dumps(found.attack.as_dict(), indent=1) + "\n").encode())
+        console.talk(f"wrote {output}")
     ctx.exit(ExitCode.of_outcome(found.outcome, expect or "split"))
 
 

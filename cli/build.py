@@ -14,7 +14,7 @@ from robustness.spelled import counted
 
 from .exit_codes import ExitCode
 from .options import json_option, talk_options
-from .output import Console, graph_document, pass_console
+from .output import Console, graph_document, pass_console, set_text
 from .query import speaking
 
 if TYPE_CHECKING:
@@ -50,6 +50,7 @@ class FamilyGroup(click.Group):
     invoke_without_command=True,
     no_args_is_help=True,
     subcommand_metavar="NAME [PARAMETERS]...",
+    short_help="Build a graph of known robustness or a counterexample.",
 )
 @click.option("--list", "wants_list", is_flag=True, help="List all families with parameters and known values.")
 @json_option
@@ -95,6 +96,30 @@ def _print_list(console: Console, as_json: bool) -> None:
         console.result(f"{'':<{width}}  {_plain(family.summary)} {family.value}.")
 
 
+#: What --help says of the parameters of all families; a word that several have means the same in each.
+_MEANINGS = {
+    "a": "Nodes of the first part.",
+    "b": "Nodes of the second part.",
+    "columns": "Nodes in a row.",
+    "dimension": "Of the hypercube.",
+    "directed": "Draw arcs, not edges.",
+    "f": "The number of malicious nodes.",
+    "k": "How many neighbours to a side.",
+    "leaders": "How many vehicles at the front everybody hears.",
+    "m": "How many parts.",
+    "n": "How many nodes.",
+    "p": "The probability of a link.",
+    "predecessors": "How many vehicles ahead of it a vehicle hears.",
+    "r": "The robustness that is wanted.",
+    "radius": "Nodes so far apart are joined.",
+    "reading": "How the figure is read: wheel, wheel-crossed or digraph.",
+    "rows": "Nodes in a column.",
+    "seed": "Of every random choice.",
+    "sizes": "Nodes of each part.",
+    "variant": "paper, the text read literally, or corrected.",
+}
+
+
 #: How --list and --help call values of each type.
 _METAVARS = {"int": "N", "float": "X", "str": "NAME", "bool": "", "Sequence[int]": "N,N,..."}
 
@@ -105,7 +130,7 @@ def _family_command(family: Family) -> click.Command:
 
     options: list[click.Parameter] = []
     for each in family.parameters:
-        settings: dict[str, Any] = {"required": each.required}
+        settings: dict[str, Any] = {"required": each.required, "help": _MEANINGS[each.name]}
         if not each.required:
             settings |= {"default": each.default, "show_default": True}
         if each.kind == "bool":
@@ -133,11 +158,21 @@ def _family_command(family: Family) -> click.Command:
         family.name,
         params=[*options, output],
         callback=build_one,
-        help=(inspect.getdoc(family.build) or "").replace("``", ""),
+        help=_help(inspect.getdoc(family.build) or ""),
         short_help=_plain(family.summary),
     )
+    own = len(made.params)
     decorated: click.Command = json_option(talk_options(made))
+    decorated.params[own:] = reversed(decorated.params[own:])  # decorators put the last one first
     return decorated
+
+
+def _help(docstring: str) -> str:
+    """Return what a family's docstring says, without its sections for Python, its examples and its markup."""
+    told, *sections = re.split(r"^(\w[\w ]*)\n-{3,}\n", docstring, flags=re.MULTILINE)
+    told += "".join(body for name, body in zip(sections[::2], sections[1::2], strict=True) if name == "Notes")
+    paragraphs = [each for each in told.split("\n\n") if not each.startswith(">>>")]
+    return re.sub(r"\*(\S[^*]*\S)\*", r"\1", _plain("\n\n".join(paragraphs)))
 
 
 def _build(console: Console, name: str, parameters: Mapping[str, Any], output: str | None, as_json: bool) -> None:
@@ -157,13 +192,18 @@ def _build(console: Console, name: str, parameters: Mapping[str, Any], output: s
         }
         console.document(SCHEMA, document)
     elif output is None:
-        console.result(encode_with_attributes(graph).decode("ascii").rstrip("\n"))
-    # What is said is the result when the graph itself goes to a file.
-    say = console.talk if as_json or output is None else console.result
-    say(f"{name}: {counted(len(graph), 'node')}, {graph.size()} {'arcs' if graph.is_directed() else 'edges'}")
-    say(_known_text(known))
+        console.content(encode_with_attributes(graph).decode("ascii").rstrip("\n"))
+    said = [f"{name}: {counted(len(graph), 'node')}, {graph.size()} {'arcs' if graph.is_directed() else 'edges'}"]
+    said.append(_known_text(known))
     if "trap" in graph.graph:
-        say("trap: " + ", ".join(f"{key} = {nodes}" for key, nodes in graph.graph["trap"].items()))
+        sets = graph.graph["trap"].items()
+        said.append("trap: " + ", ".join(f"{key} = {set_text(nodes, graph)}" for key, nodes in sets))
+    if as_json or output is None:
+        console.talk("\n".join(said))
+    else:  # what is said is the result when the graph itself goes to a file
+        console.answer(said)
+    if output is not None:
+        console.talk(f"wrote {output}")
 
 
 def _known_text(known: KnownRobustness | None) -> str:
@@ -192,5 +232,6 @@ def write_graph(graph: nx.Graph, output: str) -> None:
 
 
 def _plain(words: str) -> str:
-    """Return a docstring's sentence without its markup."""
-    return re.sub(r" \(:\w+:`[^`]*`\)|``", "", words)
+    """Return a docstring's words without its markup; a function is named as the family that it builds."""
+    words = re.sub(r" \(:\w+:`[^`]*`\)|``", "", words)
+    return re.sub(r":\w+:`([^`]*)`", lambda role: role[1].replace("_", "-"), words)

@@ -11,7 +11,7 @@ from robustness.spelled import counted, plural
 
 from .exit_codes import ExitCode
 from .interruption import Overrun
-from .options import graph_argument, load_graph
+from .options import ReadingCommand, graph_argument, load_graph
 from .output import Console, ProgressLine, graph_document
 from .query import Query, query_options
 
@@ -23,7 +23,9 @@ __all__ = ["SCHEMA", "command"]
 SCHEMA = "robustness/certify/1"
 
 
-@click.command("certify")
+@click.command(
+    "certify", cls=ReadingCommand, short_help="Decide whether GRAPH is (R,S)-robust and write a certificate."
+)
 @graph_argument
 @click.option("-r", type=click.IntRange(min=1), metavar="R", required=True, help="Is GRAPH (R,S)-robust?")
 @click.option("-s", type=click.IntRange(min=1), metavar="S", default=1, show_default=True, help="1 is r-robustness.")

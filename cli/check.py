@@ -13,7 +13,7 @@ from robustness.spelled import counted
 
 from .exit_codes import ExitCode
 from .interruption import Overrun
-from .options import Seconds, graph_argument, load_graph
+from .options import ReadingCommand, Seconds, graph_argument, load_graph
 from .output import Console, ProgressLine, graph_document, set_document, set_text
 from .query import Query, query_options
 
@@ -74,7 +74,7 @@ class Report:
         }
 
 
-@click.command("check")
+@click.command("check", cls=ReadingCommand, short_help="Decide robustness exactly with evidence.")
 @graph_argument
 @click.option("-r", type=click.IntRange(min=0), metavar="R", help="Decide whether GRAPH is (R,S)-robust.")
 @click.option("-s", type=click.IntRange(min=1), metavar="S", help="With -r; 1 unless given, which is r-robustness.")

@@ -9,18 +9,20 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .exit_codes import ExitCode
-from .options import graph_argument, load_graph
-from .output import Console, ProgressLine
+from .options import ReadingCommand, graph_argument, load_graph
+from .output import Console, ProgressLine, graph_document
 from .query import Query, query_options
 
 if TYPE_CHECKING:
     from robustness.digraph import Digraph
     from robustness.results import RobustnessResult
 
-__all__ = ["command"]
+__all__ = ["SCHEMA", "command"]
+
+SCHEMA = "robustness/draw/1"
 
 
-@click.command("draw")
+@click.command("draw", cls=ReadingCommand, short_help="Draw GRAPH with the two sets that do not listen.")
 @graph_argument
 @click.option(
     "-r",
@@ -29,7 +31,7 @@ __all__ = ["command"]
     metavar="R",
     help="Decide R-robustness, and mark the two sets that refute it.",
 )
-@click.option("-s", "s", type=click.IntRange(min=1), metavar="S", help="With -r: (R,S)-robustness.  [default: 1]")
+@click.option("-s", "s", type=click.IntRange(min=1), metavar="S", help="With -r: (R,S)-robustness; 1 unless given.")
 @click.option(
     "--attack",
     "attack_file",
@@ -45,7 +47,7 @@ __all__ = ["command"]
     metavar="FILE",
     help="The picture: .svg, .png or .pdf.",
 )
-@query_options(json=False, algorithm=True)
+@query_options(algorithm=True)
 def command(
     ctx: click.Context,
     console: Console,
@@ -84,11 +86,17 @@ def command(
                 return check_rs_robustness(graph, r, s or 1, algorithm=query.algorithm, **query.effort(line))
 
             answer = query.wait_for(work, line)
-        console.result(answer.summary())
         undecided = answer.verdict is Verdict.UNDECIDED
     elif attack_file is not None:
         answer = _attack(graph, attack_file)
+    told = answer.summary() if r is not None else ""
+    if told and not query.as_json:
+        console.result(told)
     draw_to_file(graph, answer, output)
+    if query.as_json:
+        verdict = answer.verdict.value if r is not None else None
+        content = {"graph": graph_document(graph), "output": str(output), "verdict": verdict, "summary": told}
+        console.document(SCHEMA, content)
     console.talk(f"wrote {output}")
     ctx.exit(ExitCode.UNDECIDED if undecided else ExitCode.DONE)
 

@@ -42,7 +42,7 @@ class NodeNumbers(click.ParamType):  # type: ignore[type-arg]  # generic only fr
         return range(low, high + 1)
 
 
-@click.command("find")
+@click.command("find", short_help="Search for a graph that has or has not given properties.")
 @click.option(
     "-n",
     "--nodes",
@@ -108,6 +108,8 @@ def command(
         console.document(SCHEMA, _document(result))
     else:
         _print(console, result, nodes, output)
+    if output is not None and result.graph is not None:
+        console.talk(f"wrote {output}")
     codes = {
         FindVerdict.FOUND: ExitCode.DONE,
         FindVerdict.IMPOSSIBLE: ExitCode.REFUTED,
@@ -145,7 +147,7 @@ def _print(console: Console, result: FindResult, nodes: range, output: str | Non
     if result.graph is None or output is not None:
         console.result(text)
     else:
-        console.result(encode_with_attributes(result.graph).decode("ascii").rstrip("\n"))
+        console.content(encode_with_attributes(result.graph).decode("ascii").rstrip("\n"))
         console.talk(text)
 
 

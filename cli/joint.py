@@ -14,7 +14,7 @@ from robustness.spelled import counted
 
 from .exit_codes import ExitCode
 from .interruption import Overrun
-from .options import complete_files, load_sequence, reading_options
+from .options import ReadingCommand, complete_files, load_sequence, reading_options
 from .output import Console, ProgressLine, set_text
 from .query import Query, query_options
 
@@ -74,7 +74,7 @@ class Report:
         }
 
 
-@click.command("joint")
+@click.command("joint", cls=ReadingCommand, short_help="Decide whether a time-varying network is jointly (R,S)-robust.")
 @click.argument("source", metavar="SEQ", shell_complete=complete_files)
 @reading_options
 @click.option("-r", type=click.IntRange(min=0), metavar="R", required=True, help="Jointly (R,S)-robust?")
@@ -84,12 +84,16 @@ class Report:
 @click.option("--window", type=click.IntRange(min=1), metavar="L", help="Over every L steps; else find the smallest L.")
 @click.option("--tau", type=click.IntRange(min=0), metavar="T", help="A delay bound: say whether L <= T as well.")
 @click.option("--period", type=click.IntRange(min=1), metavar="P", help="The last P steps of SEQ repeat for ever.")
-@click.option("--step", metavar="TIME", help="Length of a bin of a contact trace.  [default: 1]")
+@click.option("--step", metavar="TIME", help="Length of a bin of a contact trace; 1 unless given.")
 @click.option("--both-ways", is_flag=True, help="A contact of a contact trace is both arcs.")
 @click.option("--all-windows", is_flag=True, help="With --window: decide every window, also after one that fails.")
 @click.option("--curve", "with_curve", is_flag=True, help="For every r the smallest L as well.")
 @click.option(
-    "--plot", "picture", type=click.Path(dir_okay=False), metavar="FILE", help="Draw windows and curve (PNG, SVG)."
+    "--plot",
+    "picture",
+    type=click.Path(dir_okay=False),
+    metavar="FILE",
+    help="Draw windows and curve: .svg, .png or .pdf.",
 )
 @click.option("-o", "--certificate", type=click.Path(path_type=Path), metavar="FILE", help="Where a certificate goes.")
 @click.option("--canonical", type=click.Path(path_type=Path), metavar="FILE", help="Where the canonical SEQ goes.")
@@ -119,7 +123,8 @@ def command(
 
     \b
     SEQ is a directory       one topology file a step, in the order of the names
-           .json or -        {"nodes": [...], "period": P or null, "steps": [[[u, v], ...], ...]}
+           .json or -        {"nodes": [...], "period": P or null,
+                              "steps": [[[u, v], ...], ...]},
                              or a list of node-link documents
            .jsonl            a step a line
            .csv, .txt, ...   contacts time,source,target, put into bins of --step

@@ -143,7 +143,14 @@ def _print_version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None
 
 
 @click.group(cls=CommandTable, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
-@click.option("--version", is_flag=True, is_eager=True, expose_value=False, callback=_print_version, help="Show it.")
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_print_version,
+    help="Show the version and exit.",
+)
 @talk_options
 @pass_console
 def robustness(console: Console) -> None:
@@ -160,6 +167,10 @@ def robustness(console: Console) -> None:
 
 def main() -> None:
     """Run the command line; the entry point of the distribution."""
+    if "_ROBUSTNESS_COMPLETE" in os.environ:
+        from .completion import mend_completion
+
+        mend_completion()
     try:
         robustness(prog_name="robustness")
     except SystemExit as end:

@@ -11,7 +11,7 @@ import click
 
 from .answered import answer, tell
 from .mending import FILE, Kept, caps_in, costs_in, goal_and_files, links_in
-from .options import graph_argument, load_graph
+from .options import ReadingCommand, graph_argument, load_graph
 from .output import Console
 from .query import Query, query_options
 
@@ -24,7 +24,7 @@ __all__ = ["SCHEMA", "command"]
 SCHEMA = "robustness/mend/1"
 
 
-@click.command("mend")
+@click.command("mend", cls=ReadingCommand, short_help="Find the cheapest links that make GRAPH robust.")
 @graph_argument
 @goal_and_files
 @click.option("--candidates", type=FILE, metavar="FILE", help="A network whose links can be added; all unless given.")

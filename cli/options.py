@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from robustness.time_varying import TimeVaryingGraph
 
 __all__ = [
+    "ReadingCommand",
     "Seconds",
+    "Seed",
     "algorithm_option",
     "asked_reading",
     "complete_files",
@@ -60,6 +62,52 @@ class Seconds(click.ParamType):  # type: ignore[type-arg]  # generic only from c
         return seconds
 
 
+class Seed(click.ParamType):  # type: ignore[type-arg]
+    """A seed of random choices, as every generator takes it. A range of this size would say nothing in --help."""
+
+    name = "seed"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> int:
+        """Return ``value`` as a number of 0 to 2^63 - 1."""
+        try:
+            seed = int(value)
+        except ValueError:
+            seed = -1
+        if not 0 <= seed < 2**63:
+            self.fail(f"{value!r} is not a whole number of 0 to 2^63 - 1.", param, ctx)
+        return seed
+
+
+class _ReadingOption(click.Option):
+    """An option that says how a file is read."""
+
+
+class ReadingCommand(click.Command):
+    """A command about networks: --help begins with what it does, and how their files are read comes last."""
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the options of the command, and in a section of their own those that say how files are read."""
+        options = [each for each in self.get_params(ctx) if isinstance(each, click.Option)]
+        shown = [(each, _record(each, ctx)) for each in options]
+        for title, is_about_reading in (("Options", False), ("How files are read", True)):
+            records = [
+                record for each, record in shown if record and isinstance(each, _ReadingOption) is is_about_reading
+            ]
+            if records:
+                with formatter.section(title):
+                    formatter.write_dl(records)
+
+
+def _record(option: click.Option, ctx: click.Context) -> tuple[str, str] | None:
+    """Return what --help says of an option; of a choice that no line holds its names stand in the text."""
+    record = option.get_help_record(ctx)
+    if record is None or len(record[0]) <= 40 or not isinstance(option.type, click.Choice):
+        return record
+    *names, last = map(str, option.type.choices)
+    left = record[0].partition("[")[0] + "NAME"
+    return left, f"{', '.join(names)} or {last}. {record[1]}"
+
+
 #: Where the reading options of a command are kept, in click's context.
 _READING = "robustness.reading"
 
@@ -80,6 +128,7 @@ _READING_OPTIONS: tuple[Callable[[Any], Any], ...] = (
     click.option(
         "--format",
         metavar="NAME",
+        cls=_ReadingOption,
         expose_value=False,
         callback=_keep,
         help=f"What the file is, whatever its suffix: {', '.join(FORMAT_NAMES)}.",
@@ -87,13 +136,15 @@ _READING_OPTIONS: tuple[Callable[[Any], Any], ...] = (
     click.option(
         "--directed/--undirected",
         default=None,
+        cls=_ReadingOption,
         expose_value=False,
         callback=_keep,
-        help="Links of which the file says nothing run one way; or all run both ways.  [default: as the file says]",
+        help="Links of which the file says nothing run one way; or all run both ways; as the file says unless given.",
     ),
     click.option(
         "--label-attribute",
         metavar="NAME",
+        cls=_ReadingOption,
         expose_value=False,
         callback=_keep,
         help="The attribute that names the nodes; id for what the file tells them apart by.",
@@ -101,13 +152,15 @@ _READING_OPTIONS: tuple[Callable[[Any], Any], ...] = (
     click.option(
         "--rows",
         type=click.Choice(["speak", "hear"]),
+        cls=_ReadingOption,
         expose_value=False,
         callback=_keep,
-        help="Row u of a matrix says who hears u (speak), or whom u hears.  [default: speak]",
+        help="Row u of a matrix says who hears u (speak), or whom u hears; speak unless given.",
     ),
     click.option(
         "--columns",
         metavar="source=N,target=N",
+        cls=_ReadingOption,
         expose_value=False,
         callback=_keep_columns,
         help="Where the ends of links stand in a table: numbers from 1, or names; for contacts time=N as well.",
@@ -116,6 +169,7 @@ _READING_OPTIONS: tuple[Callable[[Any], Any], ...] = (
         "--skip-lines",
         type=click.IntRange(min=0),
         metavar="N",
+        cls=_ReadingOption,
         expose_value=False,
         callback=_keep,
         help="So many lines at the beginning of a text are no links.",
@@ -162,7 +216,7 @@ jobs_option = click.option(
 
 seed_option = click.option(
     "--seed",
-    type=click.IntRange(min=0, max=2**63 - 1),
+    type=Seed(),
     default=0,
     show_default=True,
     metavar="N",
@@ -232,8 +286,30 @@ _color_option = click.option(
 
 def _print_help(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
     if wanted and not ctx.resilient_parsing:
-        write_help(ctx.get_help())
+        formatter = _WholeWords(width=ctx.terminal_width, max_width=ctx.max_content_width)
+        ctx.command.format_help(ctx, formatter)
+        write_help(formatter.getvalue().rstrip("\n"))
         ctx.exit()
+
+
+class _WholeWords(click.HelpFormatter):
+    """Writes help whose lines never end within a name such as ``byzantine-local``."""
+
+    #: The hyphen at which no line ends, while lines are made.
+    _FIRM = "\N{NON-BREAKING HYPHEN}"
+
+    def write_text(self, text: str) -> None:
+        """Write a paragraph."""
+        super().write_text(text.replace("-", self._FIRM))
+
+    def write_dl(self, rows: Iterable[tuple[str, str]], col_max: int = 30, col_spacing: int = 2) -> None:
+        """Write a list of terms and what they mean."""
+        firm = [(term, text.replace("-", self._FIRM)) for term, text in rows]
+        super().write_dl(firm, col_max, col_spacing)
+
+    def getvalue(self) -> str:
+        """Return what was written."""
+        return super().getvalue().replace(self._FIRM, "-")
 
 
 # Not click's own, which knows no full disk.

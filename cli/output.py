@@ -50,6 +50,9 @@ _LABELS_SHOWN = 60
 #: A verdict or the kind of a message, as ``click.style`` colours it: the one place for sequences that steer a terminal.
 _HEAD = re.compile(r"(?:\x1b\[\d{1,2}m)+[\w -]+:\x1b\[0m")
 
+#: What stands before the text of a line, and what the lines it is cut into leave room for.
+_FIRST_COLUMN = re.compile(r"\s*(?:\S.{0,20}?\s{2,}|\w+ = \{)(?=\S)")
+
 
 @dataclass(slots=True)
 class Console:
@@ -64,7 +67,12 @@ class Console:
     warned: list[str] = field(default_factory=list)
 
     def result(self, text: str) -> None:
-        """Print a result on standard output."""
+        """Print a result in words on standard output; on a terminal its lines fit, but with -q a line is a line."""
+        shown = _harmless(text)
+        _write(shown if self.is_quiet else _fitted(shown, sys.stdout), to_error=False)
+
+    def content(self, text: str) -> None:
+        """Print what a file would hold, a graph or a table, as it is."""
         _write(_harmless(text), to_error=False)
 
     def answer(self, lines: Iterable[str]) -> None:
@@ -84,7 +92,7 @@ class Console:
     def talk(self, text: str) -> None:
         """Say something that is no result; -q silences it."""
         if not self.is_quiet:
-            _write(_harmless(text), to_error=True)
+            _write(_fitted(_harmless(text), sys.stderr), to_error=True)
 
     def warn(self, text: str) -> None:
         """Say what the user may have to change in the input or the options; -q silences it."""
@@ -99,10 +107,8 @@ class Console:
     def error(self, text: str) -> None:
         """Say why the command ends."""
         kind, colon, rest = text.partition(":")
-        _write(
-            click.style(_harmless(kind + colon), fg="red") + _harmless(rest) if colon else _harmless(text),
-            to_error=True,
-        )
+        shown = click.style(_harmless(kind + colon), fg="red") + _harmless(rest) if colon else _harmless(text)
+        _write(shown if "\n" in text else _fitted(shown, sys.stderr), to_error=True)  # a traceback is left as it is
 
 
 pass_console = click.make_pass_decorator(Console, ensure=True)
@@ -154,11 +160,19 @@ class ProgressLine:
         _write(f"\r\x1b[K{self._text}", to_error=True, end="")
 
 
-def terminal_width() -> int | None:
-    """Return the columns of the terminal that results go to; None when they go to a file or another program."""
-    if sys.stdout is None or not sys.stdout.isatty():
+def terminal_width(stream: TextIO | None = None) -> int | None:
+    """Return the columns of the terminal that results, or a stream, go to; None for a file or another program."""
+    stream = stream or sys.stdout
+    if stream is None or not stream.isatty():
         return None
-    return max(shutil.get_terminal_size().columns, 40)
+    try:
+        columns = int(os.environ["COLUMNS"])
+    except (KeyError, ValueError):
+        try:
+            columns = os.get_terminal_size(stream.fileno()).columns
+        except OSError:
+            columns = 80
+    return max(columns, 40)
 
 
 def wrapped(text: str, *, indent: str = "", hanging: str = "") -> str:
@@ -166,15 +180,41 @@ def wrapped(text: str, *, indent: str = "", hanging: str = "") -> str:
 
     ``indent`` stands before the first line, ``hanging`` before the others.
     """
-    width = min(max(shutil.get_terminal_size((100, 24)).columns, 40), 120)
+    return _filled(text, shutil.get_terminal_size((100, 24)).columns, indent, hanging)
+
+
+def _filled(text: str, columns: int, indent: str = "", hanging: str = "") -> str:
     return textwrap.fill(
         text,
-        width,
+        min(max(columns, 40), 120),
         initial_indent=indent,
         subsequent_indent=hanging,
         break_long_words=False,
         break_on_hyphens=False,
     )
+
+
+def _fitted(text: str, stream: TextIO | None) -> str:
+    """Return text in lines that fit the terminal; as it is where ``stream`` is none, for programs that read lines.
+
+    A line goes on below what it says: past its indentation and the word in its first column.
+    """
+    columns = None if stream is None else terminal_width(stream)
+    if columns is None:
+        return text
+    return "\n".join(_fitted_line(line, columns) for line in text.split("\n"))
+
+
+def _fitted_line(line: str, columns: int) -> str:
+    plain = click.unstyle(line)
+    if len(plain) <= columns:
+        return line
+    column = _FIRST_COLUMN.match(plain)
+    indent = len(plain) - len(plain.lstrip())
+    hanging = len(column[0]) if column else max(indent, 2)
+    head = _HEAD.match(line)
+    styled = head[0] if head else ""
+    return styled + _filled(plain, columns, hanging=" " * hanging)[len(click.unstyle(styled)) :]
 
 
 def graph_document(graph: Digraph) -> dict[str, Any]:

@@ -100,14 +100,14 @@ def speaking(command: _Command) -> _Command:
 
 
 def query_options(
-    *, json: bool = True, algorithm: bool = False, cluster: bool = False, state: bool = True
+    *, algorithm: bool = False, cluster: bool = False, state: bool = True
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Add the common options to a command, which gets the context, the console and a :class:`Query`.
 
     Parameters
     ----------
-    json, algorithm, cluster, state : bool
-        Whether the command has --json, --algorithm, --cluster, and with it --state.
+    algorithm, cluster, state : bool
+        Whether the command has --algorithm, --cluster, and with it --state.
     """
 
     def add(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -133,6 +133,6 @@ def query_options(
         wrapped = cubes_option(wrapped) if cluster and state else wrapped
         wrapped = cluster_option(wrapped) if cluster else wrapped
         wrapped = algorithm_option(wrapped) if algorithm else wrapped
-        return json_option(wrapped) if json else wrapped
+        return json_option(wrapped)
 
     return add

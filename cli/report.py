@@ -16,14 +16,16 @@ from .many_networks import (
     run_survey,
     state_option,
 )
-from .options import Seconds
+from .options import ReadingCommand, Seconds, json_option
 from .output import Console
 from .query import speaking
 
-__all__ = ["command"]
+__all__ = ["SCHEMA", "command"]
+
+SCHEMA = "robustness/report/1"
 
 
-@click.command("report")
+@click.command("report", cls=ReadingCommand, short_help="Write one HTML page about many networks.")
 @many_networks_options
 @click.option(
     "-o",
@@ -44,6 +46,7 @@ __all__ = ["command"]
     metavar="SECONDS",
     help="For each network, to find links that give it what it lacks; 0 proposes none.",
 )
+@json_option
 @speaking
 def command(
     ctx: click.Context,
@@ -54,6 +57,7 @@ def command(
     no_pictures: bool,
     state: Path | None,
     mending: float,
+    as_json: bool,
 ) -> None:
     """Write one HTML page about many networks, for somebody who will not open a terminal.
 
@@ -73,5 +77,11 @@ def command(
     )
     made = report_of(found, dict(kept.sections), title=title, gate=networks.gate)
     made.write(output)
-    console.result(headline(found, networks.gate))
+    told = headline(found, networks.gate)
+    if as_json:
+        is_complete = not is_interrupted and not found.missing
+        content = {"output": str(output), "verdict": told, **made.as_dict(), "is_complete": is_complete}
+        console.document(SCHEMA, content)
+    else:
+        console.result(told)
     ctx.exit(exit_code(console, found, is_interrupted, [f"wrote {output} ({counted(len(found), 'network')})"]))

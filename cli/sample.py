@@ -8,7 +8,7 @@ import click
 
 from .exit_codes import ExitCode
 from .interruption import Overrun, interruptibly
-from .options import graph_argument, jobs_option, json_option, load_graph, timeout_option
+from .options import ReadingCommand, Seed, graph_argument, jobs_option, json_option, load_graph, timeout_option
 from .output import Console, ProgressLine, graph_document
 from .query import speaking
 
@@ -20,9 +20,9 @@ __all__ = ["SCHEMA", "command"]
 SCHEMA = "robustness/sample/1"
 
 
-@click.command("sample")
+@click.command("sample", cls=ReadingCommand, short_help="Test by random samples whether GRAPH is R-robust; no proof.")
 @graph_argument
-@click.option("-r", type=click.IntRange(min=1), metavar="R", help="Is GRAPH R-robust?  [default: the greatest R]")
+@click.option("-r", type=click.IntRange(min=1), metavar="R", help="Is GRAPH R-robust? The greatest R unless given.")
 @click.option(
     "--error",
     type=click.FloatRange(0, 0.5, min_open=True),
@@ -37,9 +37,9 @@ SCHEMA = "robustness/sample/1"
 )
 @click.option(
     "--seed",
-    type=click.IntRange(min=0, max=2**63 - 1),
+    type=Seed(),
     metavar="N",
-    help="Draw the samples of another run again.  [default: drawn from the system]",
+    help="Draw the samples of another run again; drawn from the system unless given.",
 )
 @timeout_option
 @jobs_option

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from .choices import ADVERSARY_NAMES, EXPERIMENT_NAMES, FAULT_MODEL_NAMES, RULE_NAMES, SCHEDULE_NAMES
-from .options import complete_files, reading_options
+from .options import ReadingCommand, complete_files, reading_options
 from .output import Console
 from .query import Query, query_options
 from .simulate_asked import SCHEMA, Simulation
@@ -18,7 +18,7 @@ __all__ = ["SCHEMA", "command"]
 _FILE = click.Path(dir_okay=False, path_type=Path)
 
 
-@click.command("simulate")
+@click.command("simulate", cls=ReadingCommand, short_help="Run resilient consensus under attack: agreement or split?")
 @click.argument("source", metavar="[GRAPH]", required=False, shell_complete=complete_files)
 @reading_options
 @click.option(
@@ -30,8 +30,8 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 @click.option("--replay", type=_FILE, metavar="FILE", help="A run recorded with --save instead of GRAPH.")
 @click.option("--attack", "attack_file", type=_FILE, metavar="FILE", help="Play the attack that 'attack -o' wrote.")
 @click.option("--certificate", type=_FILE, metavar="FILE", help="Play the whole battery against a certificate.")
-@click.option("-f", "f", type=click.IntRange(min=0), metavar="F", help="The bound on faults.  [default: 1]")
-@click.option("--malicious", multiple=True, metavar="NODE", help="May be repeated.  [default: the F heard by most]")
+@click.option("-f", "f", type=click.IntRange(min=0), metavar="F", help="The bound on faults; 1 unless given.")
+@click.option("--malicious", multiple=True, metavar="NODE", help="May be repeated; the F heard by most unless given.")
 @click.option(
     "--adversary",
     type=click.Choice(ADVERSARY_NAMES),
@@ -47,7 +47,10 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
     "--schedule", type=click.Choice(SCHEDULE_NAMES), default="synchronous", show_default=True, help="Who updates when."
 )
 @click.option(
-    "--tau", type=click.IntRange(min=0), metavar="N", help="The bound on the age of values.  [default: 0 or 3]"
+    "--tau",
+    type=click.IntRange(min=0),
+    metavar="T",
+    help="The bound on the age of values; 0, or 3 with delays, unless given.",
 )
 @click.option("--over-time", is_flag=True, help="GRAPH is a sequence of graphs, as 'joint' reads it.")
 @click.option("--period", "repeat", type=click.IntRange(min=1), metavar="P", help="With it: the last P steps repeat.")
@@ -58,7 +61,7 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
     "-T", "--sampling-period", "period", type=float, metavar="T", default=1.0, show_default=True, help="Of a step."
 )
 @click.option("--speed", type=float, metavar="V", default=0.0, show_default=True, help="The target speed.")
-@click.option("--alpha", type=float, metavar="A", help="The gain of every node.  [default: 1.5/T]")
+@click.option("--alpha", type=float, metavar="A", help="The gain of every node; 1.5/T unless given.")
 @click.option(
     "--weights",
     type=click.Choice(("uniform", "unit")),

@@ -66,28 +66,33 @@ def run_scenario(console: Console, query: Query, asked: Simulation) -> ExitCode:
             outcomes = query.within(left).wait_for(work, line)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(line.note) from None
-    if asked.save is not None:
-        from robustness.simulation.replay import write_run
-
-        write_run(asked.save, scenario, starts[0], outcomes[0])
-        console.talk(f"wrote {asked.save}")
-    if asked.plot is not None:
-        from robustness.figures.simulation import Run, draw_runs
-
-        draw_runs([Run(scenario, starts[0], outcomes[0])], asked.plot, last_step=asked.last_step)
-        console.talk(f"wrote {asked.plot}")
-    if asked.animate is not None:
-        from robustness.figures.animation import animate
-        from robustness.figures.simulation import Run
-
-        animate(Run(scenario, starts[0], outcomes[0]), asked.animate, last_step=asked.last_step)
-        console.talk(f"wrote {asked.animate}")
     overall = _overall(outcomes)
     if query.as_json:
         console.document(SCHEMA, _document(scenario, starts, outcomes, overall))
     else:
         console.answer(_lines(scenario, starts, outcomes, overall, whole=console.is_verbose))
+    _write(console, asked, scenario, starts[0], outcomes[0])
     return ExitCode.of_outcome(overall, asked.expect)
+
+
+def _write(console: Console, asked: Simulation, scenario: Scenario, start: Start, outcome: Outcome) -> None:
+    """Write the first run to the files that were asked for."""
+    if asked.save is not None:
+        from robustness.simulation.replay import write_run
+
+        write_run(asked.save, scenario, start, outcome)
+        console.talk(f"wrote {asked.save}")
+    if asked.plot is not None:
+        from robustness.figures.simulation import Run, draw_runs
+
+        draw_runs([Run(scenario, start, outcome)], asked.plot, last_step=asked.last_step)
+        console.talk(f"wrote {asked.plot}")
+    if asked.animate is not None:
+        from robustness.figures.animation import animate
+        from robustness.figures.simulation import Run
+
+        animate(Run(scenario, start, outcome), asked.animate, last_step=asked.last_step)
+        console.talk(f"wrote {asked.animate}")
 
 
 def _recorded(asked: Simulation) -> Attack | tuple[Scenario, Start] | None:

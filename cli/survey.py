@@ -16,8 +16,8 @@ from .many_networks import (
     run_survey,
     state_option,
 )
-from .options import Seconds, json_option
-from .output import Console, terminal_width, wrapped
+from .options import ReadingCommand, Seconds, json_option
+from .output import Console, terminal_width
 from .query import cluster_option, joined_cluster, speaking
 
 __all__ = ["SCHEMA", "command"]
@@ -29,7 +29,7 @@ _KINDS = {".txt": "table", ".csv": "csv", ".jsonl": "jsonl", ".xml": "junit", ".
 _NAMES = tuple(_KINDS.values())
 
 
-@click.command("survey")
+@click.command("survey", cls=ReadingCommand, short_help="One row of facts for each of many networks with gates.")
 @many_networks_options
 @click.option("--as", "kind", type=click.Choice(_NAMES), help="How rows are written; told by the suffix of -o.")
 @click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE", help="For the rows.")
@@ -87,6 +87,6 @@ def command(
             columns = terminal_width()
             if kind == "table" and columns is not None:
                 content = fitted(found.listed, found.models, columns)
-            console.result(content.rstrip("\n"))
-        console.talk(wrapped(headline(found, networks.gate)))
+            console.content(content.rstrip("\n"))
+        console.talk(headline(found, networks.gate))
     ctx.exit(exit_code(console, found, is_interrupted, written))

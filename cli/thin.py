@@ -9,7 +9,7 @@ import click
 
 from .answered import answer, tell
 from .mending import FILE, Kept, goal_and_files, link_costs, links_in
-from .options import graph_argument, load_graph
+from .options import ReadingCommand, graph_argument, load_graph
 from .output import Console
 from .query import Query, query_options
 
@@ -21,7 +21,7 @@ __all__ = ["SCHEMA", "command"]
 SCHEMA = "robustness/thin/1"
 
 
-@click.command("thin")
+@click.command("thin", cls=ReadingCommand, short_help="How many links can go while GRAPH keeps what is asked of it?")
 @graph_argument
 @goal_and_files
 @click.option(

@@ -17,7 +17,7 @@ from robustness.spelled import counted, plural
 from .choices import THREAT_MODEL_NAMES
 from .exit_codes import ExitCode
 from .interruption import Overrun
-from .options import Seconds, graph_argument, load_graph, load_sequence
+from .options import ReadingCommand, Seconds, graph_argument, load_graph, load_sequence
 from .output import Console, ProgressLine, graph_document, set_text, wrapped
 from .query import Query, query_options
 
@@ -79,7 +79,7 @@ class Report:
         }
 
 
-@click.command("tolerance")
+@click.command("tolerance", cls=ReadingCommand, short_help="What f does GRAPH survive under each threat model?")
 @graph_argument
 @click.option("--model", type=click.Choice(THREAT_MODEL_NAMES), help="One threat model instead of all.")
 @click.option("--require", "required", type=click.IntRange(min=0), metavar="F", help="A gate: is F survived?")
@@ -89,11 +89,9 @@ class Report:
     metavar="T",
     help="GRAPH is a sequence as for 'joint'; values are used up to T steps after they were sent, also of links gone.",
 )
-@click.option(
-    "--T", "period_T", type=Seconds(), metavar="SECONDS", help="The sampling period of second-order vehicles."
-)
-@click.option("--alpha", type=float, metavar="GAIN", help="With --T: their gain; 1.5/T unless given.")
-@click.option("--sigma", type=float, metavar="S", help="With --T: kept weights add up to at most S; 1 unless given.")
+@click.option("-T", "--sampling-period", "period_T", type=Seconds(), metavar="T", help="Of second-order vehicles.")
+@click.option("--alpha", type=float, metavar="A", help="With -T: their gain; 1.5/T unless given.")
+@click.option("--sigma", type=float, metavar="S", help="With -T: kept weights add up to at most S; 1 unless given.")
 @click.option(
     "--delay", type=click.IntRange(min=0), metavar="B", help="Delays are at most B; with --tau T unless given."
 )
@@ -122,7 +120,7 @@ def command(
     """What does GRAPH survive? For each threat model the largest f guaranteed and the smallest refuted.
 
     \b
-    malicious   updates in step, at most f liars in all, who tell everybody the same
+    malicious   in step, at most f liars in all, who tell everybody the same
     byzantine   the same, but each neighbour may be told another lie
     delayed     delays and partly asynchronous updates, at most f liars in all
     ...-local   each of them with up to f liars around every node
@@ -133,7 +131,7 @@ def command(
     limit came first, "open" when theory does not decide it from what is given, such as a trace that ends. Without: 0,
     or 30 when something is undecided or open.
 
-    With --T and --alpha, --sigma, --delay or --gap one line says whether the theorems apply to these vehicles and, if
+    With -T and --alpha, --sigma, --delay or --gap one line says whether the theorems apply to these vehicles and, if
     not, what would make them apply; --require then counts only what applies.
 
     With -o, DIR/graph.json is the canonical graph, DIR/MODEL-guaranteed-F.cert and DIR/MODEL-refuted-F.cert are
@@ -168,12 +166,12 @@ def command(
             why = "interrupted" if is_interrupted else "the time limit was reached"
             table = _stopped(network, graph, model, (tau, delay, gap), finished, why)
             report = Report(graph, table, dict.fromkeys(table), required, time.perf_counter() - started, is_interrupted)
-    if output is not None:
-        _write_evidence(console, report, output, query)
     if query.as_json:
         console.document(SCHEMA, report.document())
     else:
         console.answer(_lines(report, source, console))
+    if output is not None:
+        _write_evidence(console, report, output, query)
     if is_interrupted:
         console.error(
             f"interrupted: {counted(len(finished), 'model was', 'models were')} finished; what is printed "
@@ -225,11 +223,15 @@ def _write_evidence(console: Console, report: Report, folder: Path, query: Query
     from robustness.threat_models import ToleranceCertificates, certify_tolerance
     from robustness.time_varying import canonical_sequence
 
+    def write(path: Path, data: bytes, note: str = "") -> None:
+        replace_file(path, data)
+        console.talk(f"wrote {path}{note}")
+
     folder.mkdir(parents=True, exist_ok=True)
-    replace_file(folder / "graph.json", report.graph.canonical_bytes())
+    write(folder / "graph.json", report.graph.canonical_bytes())
     sequence = report.table.results[0].sequence
     if sequence is not None:
-        replace_file(folder / "sequence.json", canonical_sequence(sequence))
+        write(folder / "sequence.json", canonical_sequence(sequence))
     for result in report.table.results:
 
         def work(result: ToleranceResult = result) -> ToleranceCertificates:
@@ -243,14 +245,13 @@ def _write_evidence(console: Console, report: Report, folder: Path, query: Query
         for what, f, data in claims:
             if data is not None:
                 path = folder / f"{result.model}-{what}-{f}.cert"
-                replace_file(path, data)
-                console.talk(f"wrote {path} ({len(data):,} {plural(len(data), 'byte')}, verified)")
+                write(path, data, f" ({len(data):,} {plural(len(data), 'byte')}, verified)")
             elif f is not None and f >= 0:
                 why = "too large, or a limit was reached" if report.graph.n >= 2 else "nobody can disagree"
                 console.talk(f"no certificate of {result.model}, f = {f} {what}: {why}")
         if result.attack is not None:
             text = json.dumps(result.attack.as_dict(), indent=1) + "\n"
-            replace_file(folder / f"{result.model}-attack.json", text.encode())
+            write(folder / f"{result.model}-attack.json", text.encode())
 
 
 def _prepare() -> None:

@@ -10,7 +10,7 @@ import click
 
 from .choices import FACES
 from .exit_codes import ExitCode
-from .options import Seconds, asked_reading, graph_argument, json_option, load_graph
+from .options import ReadingCommand, Seconds, asked_reading, graph_argument, json_option, load_graph
 from .output import Console, ProgressLine
 from .query import speaking
 
@@ -24,7 +24,7 @@ __all__ = ["SCHEMA", "command"]
 SCHEMA = "robustness/verify/1"
 
 
-@click.command("verify")
+@click.command("verify", cls=ReadingCommand, short_help="Verify a certificate of any kind and compare its claim.")
 @graph_argument
 @click.argument("certificate", type=click.Path(path_type=Path))
 @click.option(

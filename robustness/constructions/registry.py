@@ -67,7 +67,7 @@ def _path(n: int) -> KnownRobustness:
 
 
 def _cycle(n: int) -> KnownRobustness:
-    return _complete(3) if n == 3 else KnownRobustness(1, 5 if n == 5 else 4, "a short proof in the docstring")
+    return _complete(3) if n == 3 else KnownRobustness(1, 5 if n == 5 else 4, "proof: robustness build cycle --help")
 
 
 def _star(n: int) -> KnownRobustness:
@@ -79,7 +79,7 @@ def _one_robust(**_: int) -> KnownRobustness:
 
 
 def _wheel(n: int) -> KnownRobustness:
-    return KnownRobustness(2, n if n <= 5 else 3, "a short proof in the docstring")
+    return KnownRobustness(2, n if n <= 5 else 3, "proof: robustness build wheel --help")
 
 
 def _complete_bipartite(a: int, b: int) -> KnownRobustness:
@@ -142,7 +142,7 @@ def _unknown(**_: Any) -> None:
 
 
 def _two_f_robust(f: int, variant: str) -> KnownRobustness:
-    return KnownRobustness(2 * f, None, "a proof in the docstring, and the trap; exact search for f <= 3")
+    return KnownRobustness(2 * f, None, "exact search for f <= 3; proof and trap: robustness build two-f-robust --help")
 
 
 def _five_node_figure(reading: str) -> KnownRobustness:

@@ -112,10 +112,10 @@ class TestCommand:
     @pytest.mark.parametrize(
         ("arguments", "code", "told"),
         [
-            (("--T", "0.5"), 0, "what is known applies."),
-            (("--T", "0.5", "--alpha", "3", "--sigma", "1", "--model", "delayed", "--delay", "4", "--gap", "2"), 0, ""),
-            (("--T", "1"), 30, "what is known does not apply to these vehicles"),
-            (("--T", "0.5", "--alpha", "9"), 30, "take alpha in 1.75 .. 3.75"),
+            (("-T", "0.5"), 0, "what is known applies."),
+            (("-T", "0.5", "--alpha", "3", "--sigma", "1", "--model", "delayed", "--delay", "4", "--gap", "2"), 0, ""),
+            (("-T", "1"), 30, "what is known does not apply to these vehicles"),
+            (("-T", "0.5", "--alpha", "9"), 30, "take alpha in 1.75 .. 3.75"),
             (("--delay", "2"), 30, "malicious, malicious-local: the promise does not apply"),
             (("--alpha", "2"), 2, "give T too"),
         ],
