@@ -87,18 +87,6 @@ def test_every_parameter_of_a_family_says_what_it_is() -> None:
         assert shown.rstrip().endswith("Show this message and exit.")
 
 
-@pytest.mark.parametrize("wrong", ["nan", "inf", "0", "-1", "soon"])
-def test_seconds_are_seconds_wherever_they_are_asked_for(wrong: str, tmp_path: Path) -> None:
-    write_topology(nx.cycle_graph(4), tmp_path / "net.json")
-    net = str(tmp_path / "net.json")
-    for name, _, option in options():
-        for spelling in {"--timeout", "--total-timeout", "--s-timeout"} & set(option.opts):
-            more = {"find": [], "verify": [net, net]}.get(name, [net])
-            outcome = CliRunner().invoke(robustness, [name, *more, spelling, wrong])
-            assert outcome.exit_code == 2
-            assert "is not a positive, finite number of seconds" in outcome.stderr, name
-
-
 @pytest.mark.parametrize(
     "asked",
     [
