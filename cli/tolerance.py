@@ -55,6 +55,10 @@ class Report:
         standings = {result.standing_of(self.required).value for result in self.table.results}
         return next(each for each in ("refuted", "undecided", "open", "guaranteed") if each in standings)
 
+    def models_at(self, verdict: str | None) -> list[str]:
+        """Return the models to whose required f a verdict applies."""
+        return [each.model for each in self.table.results if each.standing_of(self.required or 0).value == verdict]
+
     def exit_code(self) -> ExitCode:
         """Return 0, 10 or 30: with --require about that f, else about whether a limit left something undecided."""
         match self.verdict():
@@ -74,9 +78,13 @@ class Report:
             "graph": graph_document(self.graph),
             "summary": self.table.summary(),
             "models": models,
-            "require": None if self.required is None else {"f": self.required, "verdict": self.verdict()},
+            "require": None if self.required is None else self._required(),
             "seconds": round(self.seconds, 6),
         }
+
+    def _required(self) -> dict[str, Any]:
+        verdict = self.verdict()
+        return {"f": self.required, "verdict": verdict, "models": self.models_at(verdict)}
 
 
 @click.command("tolerance", cls=ReadingCommand, short_help="What f does GRAPH survive under each threat model?")
@@ -331,7 +339,7 @@ def _in_one_line(table: ToleranceTable) -> str:
 def _gate(report: Report) -> str:
     verdict = report.verdict() or ""
     color = {"guaranteed": "green", "refuted": "red"}.get(verdict, "yellow")
-    models = ", ".join(report.table)
+    models = ", ".join(report.models_at(verdict))
     what = {
         "guaranteed": "agreement is guaranteed",
         "refuted": "an attack splits the network",

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 from robustness.natural_order import in_natural_order
 
-__all__ = ["Spelling", "counted", "label_text", "labels_in_words", "listed_in_words", "plural"]
+__all__ = ["Spelling", "counted", "counted_links", "label_text", "labels_in_words", "listed_in_words", "plural"]
 
 #: Text that stands without quotes: nothing in it ends a list or a set, and nothing of it is lost at its ends.
 _PLAIN = re.compile(r"[^\s,;{}()\[\]'\"](?:[^,;{}\"]*[^\s,;{}'\"])?")
@@ -24,6 +24,15 @@ def counted(count: float, noun: str, many: str = "") -> str:
     ('1 node', '0 arcs', '2 windows that fail')
     """
     return f"{count} {plural(count, noun, many)}"
+
+
+def counted_links(arcs: int, directed: bool) -> str:
+    """Return how many links a network has, of which an undirected one is two arcs.
+
+    >>> counted_links(12, directed=False), counted_links(12, directed=True)
+    ('6 links', '12 arcs')
+    """
+    return counted(arcs, "arc") if directed else counted(arcs // 2, "link")
 
 
 def plural(count: float, noun: str, many: str = "") -> str:

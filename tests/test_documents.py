@@ -7,6 +7,7 @@ examples; times are left as they stand. ``python tests/test_documents.py`` write
 from __future__ import annotations
 
 import json
+import os
 import re
 import shlex
 import shutil
@@ -25,7 +26,7 @@ BLOCK = re.compile(
 )
 SHOWN = [(page, match) for page in PAGES for match in BLOCK.finditer(page.read_text(encoding="utf-8"))]
 #: What differs from run to run: times.
-VARIABLE = re.compile(r'("seconds": |seconds +|in )[0-9.e-]+( s)?')
+VARIABLE = re.compile(r'("seconds": |seconds +|time +|in )[0-9.e-]+( s)?')
 
 
 def test_every_picture_has_a_command_that_makes_it() -> None:
@@ -55,7 +56,10 @@ def output(commands: str) -> str:
             program, *arguments = shlex.split(command)
             assert program == "robustness"
             command_line = [sys.executable, "-m", "cli", *arguments]
-            done = subprocess.run(command_line, input=said, cwd=folder, capture_output=True, timeout=120, check=False)
+            wide = {**os.environ, "COLUMNS": "100"}
+            done = subprocess.run(
+                command_line, input=said, cwd=folder, capture_output=True, timeout=120, check=False, env=wide
+            )
             assert done.returncode in (0, 10, 30), done.stderr.decode()
             said = done.stdout
     return said.decode()
@@ -78,6 +82,10 @@ def test_there_are_blocks() -> None:
     assert SHOWN
     unmarked = [page.name for page in PAGES if re.search(r"(?<!-->\n)```json\n", page.read_text(encoding="utf-8"))]
     assert unmarked == []
+    after_a_command = re.compile(r"^robustness .*\n```\n\n```text\n", re.MULTILINE)
+    # The tutorial is one session, which tests/tolerance/test_documentation.py runs as a whole.
+    pages = [page.name for page in PAGES if after_a_command.search(page.read_text(encoding="utf-8"))]
+    assert pages == ["tutorial-platoon.md"]
 
 
 @pytest.mark.parametrize(("page", "match"), SHOWN, ids=lambda value: getattr(value, "name", None))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from robustness.spelled import counted, plural
+from robustness.spelled import counted, counted_links, plural
 from robustness.surveying import Gate, Row, Survey
 from robustness.threat_models import THREAT_MODELS
 
@@ -100,7 +100,7 @@ def in_words(row: Row, models: Sequence[str]) -> str:
     if row.error:
         return f"It could not be read: {reason(row)}"
     kind = "directed " if row.directed else ""
-    links = counted(row.arcs or 0, "arc") if row.directed else counted((row.arcs or 0) // 2, "link")
+    links = counted_links(row.arcs or 0, bool(row.directed))
     sentences = [f"A {kind}network of {counted(row.nodes or 0, 'node')} and {links}.", _robustness(row)]
     sentences.append(_tolerance(row, models))
     if row.gate:

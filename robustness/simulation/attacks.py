@@ -34,7 +34,7 @@ from robustness.simulation.run import simulate
 from robustness.simulation.scenario import Scenario, Start
 from robustness.simulation.schedules import AdversarialDelays, EveryStep, Schedule
 from robustness.simulation.topology import Topology
-from robustness.spelled import Spelling, counted, labels_in_words
+from robustness.spelled import Spelling, counted, labels_in_words, plural
 
 __all__ = ["Attack", "attack_from_trap", "attack_from_violation"]
 
@@ -132,7 +132,8 @@ class Attack(Shown):
         scene = f"{groups}, all others at {_BETWEEN:g}"
         if not self.malicious:
             return f"{scene}; nobody need be malicious"
-        who = ", ".join(map(Spelling(self.graph.labels), in_natural_order(self.malicious)))
+        names = ", ".join(map(Spelling(self.graph.labels), in_natural_order(self.malicious)))
+        who = f"{plural(len(self.malicious), 'node')} {names}"
         if self.kind == "violation":
             return f"{scene}; {who} malicious, holding the start for ever"
         means = "by delays of 0 or 1 step" if self.delayed else "by telling each so"
@@ -187,8 +188,8 @@ class Attack(Shown):
 
 
 def _bare(document: dict[str, Any]) -> Any:
-    """Return a document after JSON, its story without the quotes and braces that older versions wrote round labels."""
-    return json.loads(json.dumps({**document, "story": re.sub(r"[{}'\"]", "", str(document["story"]))}))
+    """Return a document after JSON, its story without what older versions wrote round labels, or did not write."""
+    return json.loads(json.dumps({**document, "story": re.sub(r"[{}'\"]|\bnodes? ", "", str(document["story"]))}))
 
 
 def attack_from_violation(

@@ -11,7 +11,7 @@ from certificates.graph import Label
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
 from robustness.showing import Shown
-from robustness.spelled import counted
+from robustness.spelled import counted, counted_links
 from robustness.threat_models.models import THREAT_MODELS, ThreatModel
 from robustness.threat_models.parameters import Parameters
 
@@ -268,7 +268,7 @@ class ToleranceTable(Shown, Mapping[str, ToleranceResult]):
     def summary(self) -> str:
         """Return the table in one paragraph of plain words."""
         graph = self.graph
-        size = f"A network of {counted(graph.n, 'node')} and {counted(graph.arc_count, 'arc')}."
+        size = f"A network of {counted(graph.n, 'node')} and {counted_links(graph.arc_count, graph.directed)}."
         return " ".join([size, *sentences_of(self)])
 
     def evidence(self) -> list[tuple[str, str]]:

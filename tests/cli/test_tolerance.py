@@ -14,6 +14,7 @@ import networkx as nx
 import pytest
 from click.testing import CliRunner, Result
 
+import robustness as rb
 from certificates import verify, verify_tolerance
 from cli.choices import THREAT_MODEL_NAMES as MODELS
 from cli.exit_codes import ExitCode
@@ -108,7 +109,7 @@ class TestJson:
         found = document("--model", "delayed", "--require", "1")
         assert list(found) == ["schema", "graph", "summary", "models", "require", "seconds"]
         assert found["schema"] == "robustness/tolerance/1"
-        assert found["require"] == {"f": 1, "verdict": "refuted"}
+        assert found["require"] == {"f": 1, "verdict": "refuted", "models": ["delayed"]}
         (model,) = found["models"]
         assert list(model) == [
             "model", "setting", "guaranteed", "refuted", "undecided", "is_decided", "summary", "reasons",
@@ -150,10 +151,20 @@ class TestGate:
     def test_without_a_model_the_worst_counts(self, f: int, code: ExitCode) -> None:
         assert tolerance("--require", str(f), graph=BETWEEN).exit_code == code
 
+    def test_the_gate_names_the_models_that_it_is_about(self) -> None:
+        results = rb.tolerance(nx.wheel_graph(5)).results
+        refuted = [each.model for each in results if each.standing(1).value == "refuted"]
+        assert 0 < len(refuted) < len(results)
+        wheel = encode_topology(nx.wheel_graph(5))
+        assert tolerance("-q", "--require", "1", graph=wheel).stdout.startswith(
+            f"refuted: f = 1 under {', '.join(refuted)}: an attack splits the network"
+        )
+        assert document("--require", "1", graph=wheel)["require"]["models"] == refuted
+
     def test_a_limit_is_undecided(self) -> None:
         graph = encode_topology(nx.random_regular_graph(10, 60, seed=1))
         found = document("--model", "delayed", "--require", "3", "--timeout", "0.2", graph=graph)
-        assert found["require"] == {"f": 3, "verdict": "undecided"}
+        assert found["require"] == {"f": 3, "verdict": "undecided", "models": ["delayed"]}
         assert tolerance("--model", "delayed", "--timeout", "0.2", graph=graph).exit_code == ExitCode.UNDECIDED
 
     def test_what_theory_leaves_open_is_told_from_what_a_limit_left(self, tmp_path: Path) -> None:
@@ -165,7 +176,7 @@ class TestGate:
         assert outcome.stdout.startswith("open: f = 1 under delayed: theory does not decide it")
         assert "0 open, 1 open" in outcome.stdout
         found = json.loads(CliRunner().invoke(robustness, [*asked, "--require", "1", "--json"]).stdout)
-        assert found["require"] == {"f": 1, "verdict": "open"}
+        assert found["require"] == {"f": 1, "verdict": "open", "models": ["delayed"]}
 
     @pytest.mark.parametrize("stop", [Overrun, KeyboardInterrupt])
     def test_work_that_is_stopped_keeps_what_lemmas_prove(
