@@ -51,8 +51,8 @@ def write_names(
     arcs: Sequence[tuple[int, int]],
     arrows: Sequence[tuple[int, int]],
     bend: float,
-) -> None:
-    """Write the nodes' names, in the order of ``names``: the first ones have the choice.
+) -> int:
+    """Write the nodes' names, in the order of ``names``: the first ones have the choice. Return how many are left out.
 
     Parameters
     ----------
@@ -75,10 +75,11 @@ def write_names(
     if are_short(names.values()) and _WIDE * font * longest <= 1.15 * size**0.5:
         for node, name in names.items():
             axes.annotate(name, places[node], ha="center", va="center", fontsize=font, zorder=5)
-        return
+        return 0
     font = max(6.0 if len(names) <= _ALL_NAMED else 5.0, min(9.0, font))
     radius = size**0.5 / 2
     taken = _drawn(points, radius, arcs, arrows, bend)
+    left_out = 0
     for node, name in names.items():
         boxes = [_box(points[node], side, radius, _WIDE * font * _letters(name), _TALL * font) for side in _SIDES]
         costs = [_cost(box, taken) for box in boxes]
@@ -86,12 +87,14 @@ def write_names(
         across, up, ha, va = _SIDES[best]
         left, low, right, high = boxes[best]
         if len(names) > _ALL_NAMED and costs[best] > 0.1 * _NODE * (right - left) * (high - low):
+            left_out += 1
             continue
         taken = np.vstack([taken, (*boxes[best], _NODE)])
         axes.annotate(
             name, places[node], (across * (radius + _GAP), up * (radius + _GAP)), textcoords="offset points", ha=ha,
             va=va, fontsize=font, zorder=5, path_effects=[withStroke(linewidth=2.0, foreground="white")],
         )  # fmt: skip
+    return left_out
 
 
 def _letters(name: str) -> float:

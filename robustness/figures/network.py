@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import networkx as nx
@@ -36,6 +37,12 @@ _STYLES: Mapping[str, tuple[str, str]] = {
 
 #: How far arrows bend, as part of their length, so that there and back are two.
 _BEND = 0.06
+
+#: Of more nodes only small sets, and few that face each other, are named; small sets are large enough to be found.
+_CROWD, _FEW = 300, 30
+
+#: More arcs of one kind are drawn thinner, and more faint ones that run one way without their heads.
+_MANY_STRONG, _MANY_ARCS = 60, 1000
 
 _SILENCED, _ADDED, _PLAIN = "#d55e00", "#009e73", "#b8b8b8"
 
@@ -84,23 +91,43 @@ def draw(
     -----
     Linear in the arcs, once nodes have places.
     """
-    drawn = _union_for(G, result_or_attack) if isinstance(G, TimeVaryingGraph) else G
-    graph = as_digraph(drawn)
-    marks = marks_of(graph, result_or_attack)
-    known = positions_in(drawn)
-    places, is_map = positions_for(graph, marks, pos, known), pos is not None or known is not None
+    picture = _placed(G, result_or_attack, pos)
     if ax is None:
         try:
             from matplotlib import pyplot as plt
         except ImportError:
             raise MissingExtra("drawing needs matplotlib: pip install 'graph-robustness[plot]'") from None
-        ax = plt.subplots(figsize=_size(graph, places, is_map), layout="constrained")[1]
-    _draw_on(ax, graph, marks, places, scale_of(places, _room(_size_around(ax), graph, marks), is_map))
-    if not is_map:
-        # Circles of ours stay circles, in a picture that is filled, so that no node of a flat one is cut off; maps and
-        # users' places fill a picture of their shape.
-        ax.set_aspect("equal", adjustable="datalim")
+        ax = plt.subplots(figsize=picture.size(), layout="constrained")[1]
+    picture.draw_on(ax)
     return ax
+
+
+@dataclass(frozen=True, slots=True)
+class _Placed:
+    """A network, what is marked in it, and where its nodes stand: as a map or its user says, or by a layout of ours."""
+
+    graph: Digraph
+    marks: Marks
+    places: Positions
+    is_map: bool
+
+    def size(self) -> tuple[float, float]:
+        return _size(self.graph, self.places, self.is_map)
+
+    def draw_on(self, axes: Axes) -> None:
+        room = _room(_size_around(axes), self.graph, self.marks)
+        _draw_on(axes, self.graph, self.marks, self.places, scale_of(self.places, room, self.is_map))
+        if not self.is_map:
+            # Circles of ours stay circles, in a picture that is filled, so that no node of a flat one is cut off; maps
+            # and users' places fill a picture of their shape.
+            axes.set_aspect("equal", adjustable="datalim")
+
+
+def _placed(G: GraphLike | TimeVaryingGraph, answer: Any, pos: Mapping[Hashable, Sequence[float]] | None) -> _Placed:
+    drawn = _union_for(G, answer) if isinstance(G, TimeVaryingGraph) else G
+    graph = as_digraph(drawn)
+    marks, known = marks_of(graph, answer), positions_in(drawn)
+    return _Placed(graph, marks, positions_for(graph, marks, pos, known), pos is not None or known is not None)
 
 
 def _union_for(sequence: TimeVaryingGraph, result: Any) -> GraphLike:
@@ -117,10 +144,9 @@ def draw_to_file(
     pos: Mapping[Hashable, Sequence[float]] | None = None,
 ) -> None:
     """Draw as :func:`draw` does, to a file in the format of its suffix; the same picture gives the same bytes."""
-    graph, known = as_digraph(G), positions_in(G)
-    places = positions_for(graph, marks_of(graph, result_or_attack), pos, known)
-    figure = new_figure(*_size(graph, places, pos is not None or known is not None))
-    draw(G, result_or_attack, pos=pos, ax=figure.subplots())
+    picture = _placed(G, result_or_attack, pos)
+    figure = new_figure(*picture.size())
+    picture.draw_on(figure.subplots())
     save_figure(figure, path)
 
 
@@ -164,29 +190,44 @@ def _draw_on(axes: Axes, graph: Digraph, marks: Marks, places: Positions, scale:
     # Small sets over large ones, and their names first: in a crowd they are what the picture is about.
     smallest_first = sorted(groups, key=lambda one: len(one[1]))
     largest_first = sorted(groups, key=lambda one: -len(one[1]))
-    drawn = {name: _draw_group(axes, picture, name, group, places, size) for name, group in largest_first}
+    sizes = {name: _seen(size, graph, group) for name, group in groups}
+    drawn = {name: _draw_group(axes, picture, name, group, places, sizes[name]) for name, group in largest_first}
     points = {i: (x * float(scale[0]), y * float(scale[1])) for i, (x, y) in places.items()}
-    names = {i: named[i] for _, group in smallest_first for i in sorted(group)}
-    write_names(axes, names, places, points, size, list(picture.edges), arrows, _BEND)
+    naming = [group for _, group in smallest_first]
+    if graph.n > _CROWD:
+        facing = frozenset(node for arc in marks.counted for node in arc)
+        naming = [group for group in (*naming, facing) if len(group) <= _FEW]
+    names = {i: named[i] for group in naming for i in sorted(group)}
+    unnamed = graph.n - len(names)
+    unnamed += write_names(axes, names, places, points, _seen(size, graph), list(picture.edges), arrows, _BEND)
     if not graph.n:
         axes.text(0.5, 0.5, "a network without nodes", ha="center", va="center", transform=axes.transAxes)
     if marks.title:
         axes.set_title(plain(marks.title), fontsize=11, wrap=True)
     axes.set_axis_off()
-    axes.margins(0.12)
+    axes.margins(0.12 if graph.n <= _CROWD else 0.05)
     told = [drawn[name] for name, _ in groups]
-    _legend(axes, [*(told if len(told) > 1 else []), *_arc_handles(marks)])
+    notes = [f"{counted(unnamed, 'name')} left out"] if unnamed else []
+    notes += ["grey arcs drawn without heads"] if len(_faint_one_way(picture, marks)) > _MANY_ARCS else []
+    _legend(axes, [*(told if len(told) > 1 else []), *_arc_handles(marks), *map(_note, notes)])
 
 
 def _node_size(places: Positions, scale: np.ndarray, largest: float) -> float:
     """Return the area of a node in square points, not wider than ``largest``: what the places leave room for."""
-    least = 13.4 * min(1.0, (100 / max(len(places), 1)) ** 0.5)
+    is_crowd = len(places) > _CROWD
+    least, part = (2.5, 0.5) if is_crowd else (13.4 * min(1.0, (100 / max(len(places), 1)) ** 0.5), 0.8)
     if len(places) < 2:
         return largest**2
     points = np.array([places[i] for i in sorted(places)]) * scale
     near = np.sort(np.hypot(*(points[:, None] - points[None]).T), axis=0)[1]
     # Most nodes get room; the few that lie nearly on top of each other are moved apart.
-    return float(min(largest, max(4.0, least, 0.8 * float(np.quantile(near, 0.2))))) ** 2
+    return float(min(largest, max(least, part * float(np.quantile(near, 0.2))))) ** 2
+
+
+def _seen(size: float, graph: Digraph, group: Iterable[int] = ()) -> float:
+    """Return the area of a node of a group: in a crowd, those of a small one are large enough to be found."""
+    is_small = graph.n > _CROWD and len(frozenset(group)) <= _FEW
+    return max(size, 64.0) if is_small else size
 
 
 def _groups(graph: Digraph, marks: Marks) -> list[tuple[str, frozenset[int]]]:
@@ -201,7 +242,7 @@ def _draw_group(
     color, shape = _STYLES[name]
     drawn = nx.draw_networkx_nodes(
         picture, places, nodelist=sorted(group), node_color=color, node_shape=shape, node_size=size,
-        edgecolors="#404040", linewidths=0.8, ax=axes,
+        edgecolors="#404040", linewidths=min(0.8, 0.1 * size**0.5), ax=axes,
     )  # fmt: skip
     drawn.set_label(_told(name, group))
     drawn.set_clip_on(False)  # axes of equal scale may end in the middle of a node
@@ -221,27 +262,30 @@ def _draw_arcs(
 
     Returns the arcs that have heads.
     """
-    strong = marks.counted | marks.silenced | marks.added | marks.dropped
-    faint = [arc for arc in picture.edges if arc not in strong]
-    both = [(u, v) for u, v in faint if picture.has_edge(v, u) and (u < v or (v, u) in strong)]
-    single = [(u, v) for u, v in faint if not picture.has_edge(v, u)]
+    strong = _strong(marks)
+    mutual = [(u, v) for u, v in picture.edges if u < v and picture.has_edge(v, u)]
+    both = [(u, v) for u, v in mutual if (u, v) not in strong and (v, u) not in strong]
+    single = _faint_one_way(picture, marks)
     width = 1.0 if graph.arc_count <= 400 else 0.4
     bend = f"arc3,rad={_BEND}"
     nx.draw_networkx_edges(
-        picture, places, [arc for arc in both if (arc[1], arc[0]) not in strong], edge_color=_PLAIN, width=width,
+        picture, places, both if len(single) <= _MANY_ARCS else both + single, edge_color=_PLAIN, width=width,
         arrows=False, ax=axes,
     )  # fmt: skip
+    single = single if len(single) <= _MANY_ARCS else []
+    thick = 2.2 if len(marks.counted) <= _MANY_STRONG else 0.8
     shapes = (
         (single, _PLAIN, width, "solid"),
         ([arc for arc in marks.silenced if arc[1] in marks.S1 | marks.S2], _SILENCED, 1.4, "dotted"),
-        ([arc for arc in marks.counted if arc[1] in marks.S1], "#0072b2", 2.2, "solid"),
-        ([arc for arc in marks.counted if arc[1] not in marks.S1], "#b36b00", 2.2, "solid"),
+        ([arc for arc in marks.counted if arc[1] in marks.S1], "#0072b2", thick, "solid"),
+        ([arc for arc in marks.counted if arc[1] not in marks.S1], "#b36b00", thick, "solid"),
         (_one_way(marks.added), _ADDED, 3.4, "solid"),
         (_one_way(marks.dropped), _SILENCED, 1.4, "dashed"),
     )
     # The corners of squares and diamonds stick out; heads end before them.
     cornered = marks.S2 | marks.M
-    ends = [size * (1.7 if node in cornered else 1.0) for node in picture]
+    large = {node: _seen(size, graph, group) for _, group in _groups(graph, marks) for node in group}
+    ends = [large[node] * (1.7 if node in cornered else 1.0) for node in picture]
     headed: list[tuple[int, int]] = []
     links = {arc for group in (marks.added, marks.dropped) for arc in group if (arc[1], arc[0]) in group}
     for arcs, color, thick, style in shapes:
@@ -254,6 +298,16 @@ def _draw_arcs(
             )  # fmt: skip
             headed += [] if links.issuperset(arcs) else arcs
     return headed
+
+
+def _strong(marks: Marks) -> frozenset[tuple[int, int]]:
+    return frozenset(marks.counted | marks.silenced | marks.added | marks.dropped)
+
+
+def _faint_one_way(picture: nx.DiGraph, marks: Marks) -> list[tuple[int, int]]:
+    """Return the arcs that nothing marks and that none runs against."""
+    strong = _strong(marks)
+    return [(u, v) for u, v in picture.edges if not picture.has_edge(v, u) and (u, v) not in strong]
 
 
 def _one_way(arcs: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
@@ -274,6 +328,13 @@ def _arc_handles(marks: Marks) -> list[Any]:
         (marks.dropped, _SILENCED, "--", "link dropped"),
     )
     return [Line2D([], [], color=color, ls=style, lw=2, label=text) for arcs, color, style, text in rows if arcs]
+
+
+def _note(text: str) -> Any:
+    """Return a line of the legend that stands for nothing drawn."""
+    from matplotlib.lines import Line2D
+
+    return Line2D([], [], ls="", label=text)
 
 
 def _legend(axes: Axes, handles: list[Any]) -> None:

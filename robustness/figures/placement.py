@@ -12,6 +12,7 @@ import numpy as np
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
 from robustness.figures.marking import Marks
+from robustness.figures.springs import LARGE, large_layout
 from robustness.places import place_of, two_numbers
 
 __all__ = ["Positions", "moved_apart", "positions_for", "positions_in", "scale_of"]
@@ -22,6 +23,12 @@ Positions = dict[int, tuple[float, float]]
 #: The angle of the first node of a circle: nearly upright, so that two or four nodes do not lie on one line with those
 #: of another circle beside it.
 _TURN = 1.25
+
+#: A side of more nodes fills a disc: on a circle they would cover each other.
+_MOST_ON_A_CIRCLE = 60
+
+#: Of more nodes none is moved.
+_MOST_MOVED = 3000
 
 #: A denser graph looks best on one circle.
 _DENSE = 0.5
@@ -99,21 +106,19 @@ def scale_of(places: Positions, shape: tuple[float, float], fills: bool) -> np.n
 def moved_apart(places: Positions, scale: np.ndarray, wide: float) -> Positions:
     """Return places where nodes so many points wide do not cover each other; those that have room keep theirs.
 
-    Of more than 300 nodes, a crowd in any case, all keep theirs. Pairs that are too near push each other away, again
-    and again, as in any relaxation of a force layout.
+    Of more than 3000 nodes all keep theirs. Pairs that are too near push each other away, again and again, as in any
+    relaxation of a force layout.
     """
-    if not 2 <= len(places) <= 300:
+    if not 2 <= len(places) <= _MOST_MOVED:
         return places
     nodes = sorted(places)
     start = np.array([places[i] for i in nodes]) * scale
     points = start.copy()
     for _ in range(100):
-        apart = points[:, None] - points[None]
-        distance = np.hypot(apart[..., 0], apart[..., 1])
-        first, second = np.nonzero(np.triu(distance < wide, 1))
-        if not len(first):
+        near = _near_pairs(points, wide)
+        if not near:
             break
-        for i, j in zip(first, second, strict=True):
+        for i, j in near:
             gap = points[i] - points[j]
             length = float(np.hypot(*gap))
             # Nodes on the very same place leave it in directions of their own.
@@ -127,6 +132,21 @@ def moved_apart(places: Positions, scale: np.ndarray, wide: float) -> Positions:
         node: (float(x), float(y)) if away else places[node]
         for node, away, (x, y) in zip(nodes, moved, points / scale, strict=True)
     }
+
+
+def _near_pairs(points: np.ndarray, wide: float) -> list[tuple[int, int]]:
+    """Return the pairs of points nearer than ``wide``, in order; work grows with what lies near in one direction."""
+    order = np.argsort(points[:, 0], kind="stable")
+    along = points[order]
+    found: list[tuple[int, int]] = []
+    for ahead in range(1, len(points)):
+        apart = along[ahead:] - along[:-ahead]
+        if not (apart[:, 0] < wide).any():
+            break
+        close = np.flatnonzero(np.hypot(apart[:, 0], apart[:, 1]) < wide)
+        pairs = np.sort(np.stack([order[close], order[close + ahead]], axis=1), axis=1)
+        found += map(tuple, pairs.tolist())
+    return sorted(found)
 
 
 def _sides(graph: Digraph, marks: Marks) -> Positions:
@@ -145,8 +165,14 @@ def _sides(graph: Digraph, marks: Marks) -> Positions:
         "M": (0.0, 0.5 * tall + radius["M"]),
         "rest": (0.0, -0.5 * tall - radius["rest"]),
     }
+    at_ends = {node for arc in marks.counted | marks.silenced for node in arc}
     for name, group in (("S1", marks.S1), ("S2", marks.S2), ("M", apart), ("rest", others)):
-        places.update(_circle(sorted(group), centres[name], radius[name]))
+        if len(group) <= _MOST_ON_A_CIRCLE:
+            places.update(_circle(sorted(group), centres[name], radius[name]))
+        else:
+            # Those that arcs between the sides join stand where the sides face each other.
+            facing_first = sorted(group, key=lambda node: (node not in at_ends, node))
+            places.update(_disc(facing_first, centres[name], radius[name]))
     return places
 
 
@@ -158,6 +184,16 @@ def _circle(nodes: list[int], centre: tuple[float, float], radius: float) -> Pos
         node: (centre[0] + radius * math.cos(_TURN + k * turn), centre[1] + radius * math.sin(_TURN + k * turn))
         for k, node in enumerate(nodes)
     }
+
+
+def _disc(nodes: list[int], centre: tuple[float, float], radius: float) -> Positions:
+    """Return places that fill a disc evenly, as seeds do in a sunflower (Vogel, 1979); the first nearest the origin."""
+    golden = math.pi * (3 - math.sqrt(5))
+    seeds = []
+    for k in range(len(nodes)):
+        away = radius * math.sqrt((k + 0.5) / len(nodes))
+        seeds.append((centre[0] + away * math.cos(k * golden), centre[1] + away * math.sin(k * golden)))
+    return dict(zip(nodes, sorted(seeds, key=lambda seed: math.hypot(*seed)), strict=True))
 
 
 def _spread(graph: Digraph) -> Positions:
@@ -187,5 +223,9 @@ def _part(shape: nx.Graph, radius: float) -> Positions:
     nodes = sorted(shape)
     if len(nodes) < 3 or nx.density(shape) > _DENSE:
         return _circle(nodes, (0.0, 0.0), radius)
+    if len(nodes) >= LARGE:
+        return {
+            node: (x, y) for node, (x, y) in zip(nodes, (radius * large_layout(shape, nodes)).tolist(), strict=True)
+        }
     placed = nx.spring_layout(shape, seed=1, iterations=300, k=1.6 / math.sqrt(len(nodes)), scale=radius)
     return {node: (float(place[0]), float(place[1])) for node, place in placed.items() if np.isfinite(place).all()}

@@ -254,8 +254,7 @@ class TestNames:
         pos = {f"station {k}": (k % 30, k // 30) for k in range(900)}
         ax = rb.draw(crowd, (few, set(crowd) - few), pos=pos, ax=figure.subplots())
         figure.draw_without_rendering()
-        assert few < {text.get_text() for text in ax.texts}
-        assert len(ax.texts) < 900
+        assert few == {text.get_text() for text in ax.texts}
         sizes = [group.get_sizes()[0] ** 0.5 for group in ax.collections if isinstance(group, PathCollection)]
         assert max(sizes) < 13
         last = [group for group in ax.collections if isinstance(group, PathCollection)][-1]
