@@ -19,6 +19,7 @@ from certificates.errors import MalformedCertificate, RejectedCertificate
 from certificates.file_bytes import certificate_blocks, read_at_most
 from certificates.graph import MAX_GRAPH_BYTES
 from certificates.joint import MAX_SEQUENCE_BYTES, verify_joint
+from certificates.least_cost import DEFAULT_CHOICES
 from certificates.questions import Claim, Question, comparison, verify_any
 from certificates.tolerance import verify_tolerance
 
@@ -44,6 +45,9 @@ def main(arguments: list[str] | None = None) -> int:
             each.add_argument("-r", type=int, help="the r that the claim must be about")
             each.add_argument("-s", type=int, help="the s that the claim must be about")
             each.add_argument("--window", type=int, help="the number of steps that the claim must be about")
+        if each is whole:
+            least = f"of mending: nodes of the tree that proves the least cost (default {DEFAULT_CHOICES})"
+            each.add_argument("--choices", type=int, default=DEFAULT_CHOICES, metavar="N", help=least)
         if each is not joint:
             each.add_argument("-f", type=int, help="the f that the claim must be about")
             each.add_argument("--faces", type=int, choices=[1, 2], help="how many faces a malicious node has")
@@ -53,7 +57,7 @@ def main(arguments: list[str] | None = None) -> int:
     if question.gap():
         parser.error(question.gap())
     try:
-        claim = _verify(asked["command"], asked["subject"], asked["certificate"])
+        claim = _verify(asked["command"], asked["subject"], asked["certificate"], asked.get("choices", 0))
     except OSError as problem:
         return _fail(3, f"error: cannot read {problem.filename}: {problem.strerror}")
     except MemoryError:
@@ -69,7 +73,7 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
-def _verify(command: str, subject: Path, certificate: Path) -> Claim:
+def _verify(command: str, subject: Path, certificate: Path, choices: int) -> Claim:
     """Return the claim that the files prove, read in the order of the command line."""
     first = read_at_most(subject, max(MAX_GRAPH_BYTES, MAX_SEQUENCE_BYTES))
     second = certificate_blocks(certificate, _progress if sys.stderr is not None and sys.stderr.isatty() else None)
@@ -79,7 +83,7 @@ def _verify(command: str, subject: Path, certificate: Path) -> Claim:
         case "verify-tolerance":
             return verify_tolerance(first, second)
         case _:
-            return verify_any(first, second)
+            return verify_any(first, second, lambda looked: looked < choices)
 
 
 def _progress(done: int, size: int) -> None:

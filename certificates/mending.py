@@ -13,13 +13,15 @@ A *cover* is a family of sets of nodes such that every arc of the graph lies ins
 each. What they demand of a choice that reaches (r,s)-robustness is the lemma on spreading there; only that it is a
 cover with its starts is checked.
 
-That no cheaper choice breaks all of these violations, and does what the covers demand, is no business of the kernel: it
-is a problem in integers that the certificate holds whole, for any solver.
+That no cheaper choice breaks all of these violations, and does what the covers demand, is a problem in integers that
+the certificate holds whole. A tree over choices (:mod:`certificates.least_cost`) proves it where a few thousand nodes
+are enough; else it is for any solver.
 """
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -28,6 +30,7 @@ from certificates.direct import check_violation
 from certificates.envelope import id_set, open_certificate, require_about, require_keys
 from certificates.errors import MalformedCertificate, RejectedCertificate
 from certificates.graph import CanonicalGraph, decode_graph, digest, encode_graph
+from certificates.least_cost import no_choice_is_cheaper
 from certificates.stream import Blocks, Stream
 from certificates.tolerance import check_sets, verify_tolerance
 from certificates.verification import verify
@@ -53,7 +56,8 @@ class VerifiedMendingClaim:
     goal: str
     #: What the chosen links cost, in units of the certificate; None when none were chosen.
     cost: int | None
-    #: What a solver has to confirm: no choice that breaks all violations costs less. None: none breaks them all.
+    #: No choice that breaks all violations costs less. None: none breaks them all. A solver has to confirm it unless
+    #: ``is_least`` is true.
     least: int | None
     links: int
     violations: int
@@ -65,6 +69,8 @@ class VerifiedMendingClaim:
     #: Nodes of search trees that were replayed.
     tree_nodes: int = 0
     covers: int = 0
+    #: Whether a tree over choices has proven ``least``.
+    is_least: bool = False
 
     def __str__(self) -> str:
         graph = f"the graph with {self.nodes} nodes, {self.arcs} arcs and SHA-256 {self.sha256}"
@@ -73,13 +79,16 @@ class VerifiedMendingClaim:
             reached = f"reaches the goal, {self.goal}, with {self.links} links of cost {self.cost}, and "
         covers = f", and {self.covers} covers whose demands it has to meet" if self.covers else ""
         rest = "no choice does" if self.least is None else f"this costs at least {self.least}"
+        proven = "proven by a tree over choices" if self.is_least else "left to a solver"
         return (
             f"{graph} {reached}has {self.violations} violations that every choice of links that reaches the goal, "
-            f"{self.goal}, has to break{covers}; that {rest} is left to a solver"
+            f"{self.goal}, has to break{covers}; that {rest} is {proven}"
         )
 
 
-def verify_mending(graph_bytes: bytes, certificate_bytes: Blocks | Stream) -> VerifiedMendingClaim:
+def verify_mending(
+    graph_bytes: bytes, certificate_bytes: Blocks | Stream, may_go_on: Callable[[int], bool] | None = None
+) -> VerifiedMendingClaim:
     """Return the claim that ``certificate_bytes`` proves about the graph in ``graph_bytes``, before mending.
 
     Parameters
@@ -88,6 +97,9 @@ def verify_mending(graph_bytes: bytes, certificate_bytes: Blocks | Stream) -> Ve
         The canonical graph, or a node-link JSON document of it.
     certificate_bytes : bytes
         A mending certificate as docs/certificate-format.md defines it.
+    may_go_on : callable, optional
+        Whether to go on with the tree that proves the least cost, given how many nodes of it were looked at; without it
+        there is none.
 
     Raises
     ------
@@ -121,6 +133,7 @@ def verify_mending(graph_bytes: bytes, certificate_bytes: Blocks | Stream) -> Ve
         " and ".join(words) or "anything", claim["cost"], claim["least"], links, len(pairs),
         graph.sha256, graph.n, graph.arc_count, "" if mended is None else digest(mended), tree_nodes,
         len(document["covers"]),
+        may_go_on is not None and no_choice_is_cheaper(graph.hears, document, may_go_on),
     )  # fmt: skip
 
 

@@ -87,12 +87,17 @@ def format_of(certificate: bytes | Stream) -> str:
     return found
 
 
-def verify_any(subject_bytes: bytes, certificate_bytes: Blocks | Stream) -> Claim:
+def verify_any(
+    subject_bytes: bytes, certificate_bytes: Blocks | Stream, may_go_on: Callable[[int], bool] | None = None
+) -> Claim:
     """Verify a certificate of whichever kind, and return its claim.
 
-    ``subject_bytes`` is the canonical graph, or the canonical sequence for joint robustness.
+    ``subject_bytes`` is the canonical graph, or the canonical sequence for joint robustness; ``may_go_on``
+    is for certificates of mending alone, as :func:`verify_mending` takes it.
     """
     stream = Stream.of(certificate_bytes)
+    if format_of(stream) == MENDING_FORMAT:
+        return verify_mending(subject_bytes, stream, may_go_on)
     return _VERIFIERS[format_of(stream)](subject_bytes, stream)
 
 

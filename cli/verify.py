@@ -48,6 +48,12 @@ SCHEMA = "robustness/verify/1"
     "of what malicious nodes can do.",
 )
 @click.option(
+    "--choices",
+    type=click.IntRange(min=0),
+    metavar="N",
+    help="Of a mending certificate: nodes of the kernel's tree over choices; 10000 unless given.",
+)
+@click.option(
     "--timeout",
     type=Seconds(),
     metavar="SECONDS",
@@ -75,6 +81,7 @@ def command(
     f: int | None,
     model: str | None,
     checker: str,
+    choices: int | None,
     timeout: float | None,
     jobs: int,
     as_json: bool,
@@ -82,10 +89,10 @@ def command(
     """Verify CERTIFICATE, of any kind, for GRAPH and compare the claim that it proves with the question asked.
 
     For a certificate of joint robustness GRAPH is the sequence that 'joint --canonical' wrote. A claim that implies the
-    one asked for answers too. Of a mending certificate, about the network before mending, the kernel verifies all but
-    the lower bound, which HiGHS confirms from the certificate alone. Exit code 0: it proves its claim, and the claim
-    answers the question. 10: it does not. 3: a file is malformed. 30: HiGHS did not decide in time. Without a question
-    the claim is printed, and said to be compared with none.
+    one asked for answers too. Of a mending certificate, about the network before mending, the lower bound is confirmed
+    from the certificate alone: by the kernel's tree over choices (--choices), else by HiGHS (--timeout). Exit code 0:
+    it proves its claim, and the claim answers the question. 10: it does not. 3: a file is malformed. 30: neither
+    decided about the lower bound. Without a question the claim is printed, and said to be compared with none.
     """
     from certificates.mending import FORMAT as MENDING_FORMAT
     from certificates.questions import Question, comparison, format_of
@@ -104,7 +111,7 @@ def command(
             shared = _verified_in_parallel(console, source, certificate, stream, jobs, line) if jobs > 1 else None
             claim = shared or _verified(source, whole or stream)
     answers, how = comparison(claim, question)
-    confirmation = _confirmed(source, whole, timeout) if answers and hasattr(claim, "least") else None
+    confirmation = _confirmed(source, whole, timeout, choices) if answers and hasattr(claim, "least") else None
     if confirmation is not None:
         _tell_confirmation(ctx, console, confirmation, how, as_json=as_json)
     if as_json:
@@ -175,10 +182,12 @@ def _mended_bytes(source: str, certificate: bytes) -> bytes:
     return subject_of(load_graph(source), certificate).canonical_bytes()
 
 
-def _confirmed(source: str, certificate: bytes, timeout: float | None) -> Confirmation:
+def _confirmed(source: str, certificate: bytes, timeout: float | None, choices: int | None) -> Confirmation:
+    from certificates.least_cost import DEFAULT_CHOICES
     from robustness.mending import confirm_least
 
-    return confirm_least(_mended_bytes(source, certificate), certificate, time_limit=timeout)
+    most = DEFAULT_CHOICES if choices is None else choices
+    return confirm_least(_mended_bytes(source, certificate), certificate, time_limit=timeout, choices=most)
 
 
 def _tell_confirmation(
@@ -187,7 +196,7 @@ def _tell_confirmation(
     """Print what the kernel proved and what the solver says, and end with the exit code."""
     codes = {"confirmed": ExitCode.DONE, "refuted": ExitCode.REFUTED, "undecided": ExitCode.UNDECIDED}
     if as_json:
-        said = {"bound": confirmation.verdict.value, "solver": "highs"}
+        said = {"bound": confirmation.verdict.value, "solver": confirmation.solver}
         console.document(SCHEMA, _document(confirmation.claim) | {"as_asked": True, "comparison": how} | said)
     else:
         console.result(f"verified: {confirmation.claim}; {how}\n{confirmation}")

@@ -74,7 +74,7 @@ PARTIAL = {
     "survey": "its threads take networks, and every network is searched by one",
     "report": "the same",
     "margin": "one 0-1 programme: the solver takes time, threads and seed, and tells no progress",
-    "confirm_least": "one 0-1 programme for HiGHS, which takes time alone",
+    "confirm_least": "a counted tree, and one 0-1 programme for HiGHS, which takes time alone",
     "guaranteed": "a small seed graph",
     "replay": "the same",
     "certify_derivation": "the same",

@@ -1,9 +1,9 @@
-r"""The lower bound checked again, from a certificate alone, by another solver: HiGHS.
+r"""The lower bound checked again, from a certificate alone: by the kernel, or by another solver, HiGHS.
 
 Nothing here is shared with the search. The kernel verifies the certificate: each of its pairs is a violation of the
-network before mending. From the same bytes the master problem is built anew, row by row, as docs/certificate-format.md
-states it: over ``x_a`` (a link is chosen), ``y_iO`` (node i hears enough of the set O) and for each side of a pair
-``f_S`` (all its normal nodes do), all 0 or 1::
+network before mending; and it proves the bound where its tree over choices is small. Else the master problem is built
+anew from the same bytes, row by row, as docs/certificate-format.md states it: over ``x_a`` (a link is chosen), ``y_iO``
+(node i hears enough of the set O) and for each side of a pair ``f_S`` (all its normal nodes do), all 0 or 1::
 
     sum of the links that bring i an arc from O  >=  (enough - what i hears of O already) y_iO
     f_S <= y_iO                                                                  every normal i of S
@@ -32,6 +32,7 @@ from typing import Any
 
 from certificates.errors import MalformedCertificate, RejectedCertificate
 from certificates.graph import decode_graph
+from certificates.least_cost import DEFAULT_CHOICES
 from certificates.mending import VerifiedMendingClaim, verify_mending
 from certificates.stream import Stream
 from certificates.strict_json import parse
@@ -69,25 +70,42 @@ class Confirmation:
     verdict: LeastVerdict
     cheaper: tuple[tuple[int, int], ...] = ()
 
+    @property
+    def solver(self) -> str:
+        """Who was asked: ``"kernel"`` when it proved the bound itself, by its tree over choices; else ``"highs"``."""
+        return "kernel" if self.claim.is_least else "highs"
+
     def __str__(self) -> str:
         least = self.claim.least
         what = "no choice breaks them all" if least is None else f"to break them all costs at least {least}"
+        if self.claim.is_least:
+            return f"the kernel's tree over choices confirms that {what}"
         if self.verdict is LeastVerdict.CONFIRMED:
             return f"HiGHS confirms that {what}"
         if self.verdict is LeastVerdict.REFUTED:
             return f"HiGHS finds {len(self.cheaper)} links that break them all and cost less than the certificate says"
-        return f"HiGHS did not decide within the limit whether {what}"
+        return f"undecided whether {what}: neither the kernel's tree over choices nor HiGHS decided within the limits"
 
 
-def confirm_least(graph_bytes: bytes, certificate_bytes: bytes, *, time_limit: float | None = None) -> Confirmation:
-    """Verify a mending certificate, and have its lower bound confirmed by HiGHS from the certificate alone.
+def confirm_least(
+    graph_bytes: bytes,
+    certificate_bytes: bytes,
+    *,
+    time_limit: float | None = None,
+    choices: int = DEFAULT_CHOICES,
+) -> Confirmation:
+    """Verify a mending certificate, and have its lower bound confirmed from the certificate alone.
+
+    By the kernel, where its tree over choices is small enough, and else by HiGHS.
 
     Parameters
     ----------
     graph_bytes, certificate_bytes : bytes
         As for :func:`certificates.verify_mending`.
     time_limit : float, optional
-        Wall-clock seconds for the solver; past it the bound is UNDECIDED, and what the kernel proved still holds.
+        Wall-clock seconds; past it the bound is UNDECIDED, and what the kernel proved still holds.
+    choices : int
+        Nodes of the kernel's tree over choices, before HiGHS is asked; with 0 HiGHS is asked at once.
 
     Returns
     -------
@@ -103,11 +121,11 @@ def confirm_least(graph_bytes: bytes, certificate_bytes: bytes, *, time_limit: f
     >>> from robustness.mending import certify_mending
     >>> path = rb.Digraph.from_networkx(nx.path_graph(5))
     >>> print(confirm_least(path.canonical_bytes(), certify_mending(rb.mend(path, 2))))
-    HiGHS confirms that to break them all costs at least 2
+    the kernel's tree over choices confirms that to break them all costs at least 2
     """
     limits = Limits.of(time_limit)
-    claim = verify_mending(graph_bytes, certificate_bytes)
-    if claim.least == 0:
+    claim = verify_mending(graph_bytes, certificate_bytes, lambda looked: looked < choices and not limits.expired())
+    if claim.least == 0 or claim.is_least:
         return Confirmation(claim, LeastVerdict.CONFIRMED)
     document = parse(Stream(certificate_bytes).line(), MalformedCertificate, "the certificate")
     rebuilt = _Rebuilt(decode_graph(graph_bytes).hears, document)

@@ -57,16 +57,20 @@ def test_the_certificate_of_the_least_cost_is_verified(platoon: Path, tmp_path: 
     assert "verified" in done.stderr
     verified = run("verify", platoon, certificate)
     assert verified.exit_code == ExitCode.DONE, verified.output
-    assert "HiGHS confirms that to break them all costs at least 4" in verified.stdout
+    assert "the kernel's tree over choices confirms that to break them all costs at least 4" in verified.stdout
+    by_highs = run("verify", platoon, certificate, "--choices", 0)
+    assert (by_highs.exit_code, by_highs.stdout.count("HiGHS confirms that")) == (ExitCode.DONE, 1)
     found = json.loads(run("verify", platoon, certificate, "--json").stdout)
-    assert (found["cost"], found["least"], found["bound"], found["solver"]) == (4, 4, "confirmed", "highs")
+    assert (found["cost"], found["least"], found["bound"], found["solver"]) == (4, 4, "confirmed", "kernel")
     assert run("verify", platoon, certificate, "--timeout", "0.001").exit_code in (ExitCode.DONE, ExitCode.UNDECIDED)
     assert run("verify", platoon, certificate, "--expect", "robust").exit_code == ExitCode.REFUTED
     canonical.write_bytes(rb.read_topology(platoon).canonical_bytes())
     command = ["-I", "-m", "certificates", "verify", str(canonical), str(certificate)]
     checked = subprocess.run([sys.executable, *command], capture_output=True, text=True, check=False)
     assert checked.returncode == 0, checked.stderr
-    assert "left to a solver" in checked.stdout
+    assert "proven by a tree over choices" in checked.stdout
+    checked = subprocess.run([sys.executable, *command, "--choices", "3"], capture_output=True, text=True, check=False)
+    assert (checked.returncode, checked.stdout.count("left to a solver")) == (0, 1)
     forged = tmp_path / "forged.cert"
     forged.write_bytes(certificate.read_bytes().replace(b'"pairs":[', b'"pairs":[[0,[],[1],[3]],'))
     assert run("verify", platoon, forged).exit_code == ExitCode.REFUTED
