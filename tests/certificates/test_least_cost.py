@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import random
 from itertools import combinations
 from typing import Any
@@ -67,10 +68,13 @@ def least_by_trying(graph: Digraph, document: dict[str, Any]) -> int | None:
 def question(rng: random.Random) -> tuple[Digraph, dict[str, Any]]:
     """Return a small graph, links for it, and violations of one or two parts in it."""
     n, one_way = rng.randint(3, 6), rng.random() < 0.5
-    graph = as_digraph(nx.gnp_random_graph(n, rng.choice([0.1, 0.3, 0.6]), seed=rng.randrange(10**6), directed=one_way))
+    directed = one_way or rng.random() < 0.3
+    graph = as_digraph(
+        nx.gnp_random_graph(n, rng.choice([0.1, 0.3, 0.6]), seed=rng.randrange(10**6), directed=directed)
+    )
     arcs = set(graph.arcs())
     ends = [(u, v) for u in range(n) for v in range(n) if u != v and (one_way or u < v)]
-    free = [(u, v) for u, v in ends if (u, v) not in arcs]
+    free = [(u, v) for u, v in ends if not {(u, v), (u, v) if one_way else (v, u)} <= arcs]
     links = sorted(rng.sample(free, min(len(free), rng.randint(0, 8))))
     few = rng.random() < 0.3
     parts = rng.sample(PARTS, rng.randint(1, 2))
@@ -163,3 +167,18 @@ def test_it_stops_when_it_is_told_to() -> None:
     assert not verify_mending(path.canonical_bytes(), data, may_go_on).is_least
     assert asked == [0, 1, 2, 3, 4, 5]
     assert not verify_mending(path.canonical_bytes(), data).is_least
+
+
+def test_a_cover_whose_links_can_be_paid_for_demands_nothing() -> None:
+    """It may be met by those links, and which they are is left to a solver."""
+    path = as_digraph(nx.path_graph(5))
+    data = certify_mending(rb.mend(path, (2, 2)))
+    assert data is not None
+    header, _, body = data.partition(b"\n")
+    document = json.loads(header)
+    document["pairs"], document["covers"] = [], [[0, [[0, 1]], [0, 1, 2, 3, 4]]]
+    told = json.dumps(document).encode() + b"\n" + body
+    assert not verify_mending(path.canonical_bytes(), told, lambda looked: looked < 1_000).is_least
+    document["covers"] = [[0, [[0, 1]], [0, 1], [1, 2], [2, 3], [3, 4]]]
+    told = json.dumps(document).encode() + b"\n" + body
+    assert verify_mending(path.canonical_bytes(), told, lambda looked: looked < 1_000).is_least
