@@ -326,10 +326,10 @@ def _lines(report: Report, source: str, console: Console) -> Iterator[str]:
 
 def _in_one_line(table: ToleranceTable) -> str:
     """Return the largest f guaranteed under each model, and where something is not known the smallest f refuted."""
-    from robustness.threat_models.results import number
+    from robustness.threat_models.results import largest_survived, number
 
     told = (
-        f"{result.model} {number(result.guaranteed)}"
+        f"{result.model} {largest_survived(result)}"
         + ("" if result.is_decided else f" (refuted: {number(result.refuted)})")
         for result in table.results
     )
@@ -355,14 +355,14 @@ def _gate(report: Report) -> str:
 
 
 def _table(table: ToleranceTable) -> Iterator[str]:
-    from robustness.threat_models.results import number
+    from robustness.threat_models.results import largest_survived, number
 
     yield f"{'model':<17}{'guaranteed':>10}{'refuted':>9}  between"
     for result in table.results:
         between = ", ".join(f"{f} {result.standing(f).value}" for f in result.between) or "-"
         if result.refuted is None and result.graph.n >= 2:
             between = "undecided"
-        yield f"{result.model:<17}{number(result.guaranteed):>10}{number(result.refuted):>9}  {between}"
+        yield f"{result.model:<17}{largest_survived(result):>10}{number(result.refuted):>9}  {between}"
 
 
 def _evidence(result: ToleranceResult, confirmed: bool | None) -> Iterator[str]:

@@ -82,6 +82,27 @@ class TestWords:
         )
         assert "A network of 7 nodes and 21 links." in Tags(made.html).text
 
+    @pytest.mark.parametrize(
+        ("nodes", "guaranteed", "refuted", "words"),
+        [
+            (4, 1, 2, "The network survives 1 malicious node under the threat model delayed. Nothing"),
+            (4, 0, 1, "The network does not survive 1 malicious node under the threat model delayed. Nothing"),
+            (4, -1, 0, "The network does not survive 1 malicious node"),
+            (4, 0, 3, "Whether the network survives 1 malicious node under the threat model delayed was not decided"),
+            (4, 0, None, "Whether the network survives 1 malicious node"),
+            (1, 0, None, "The network survives 1 malicious node"),
+        ],
+    )
+    def test_without_a_gate_nothing_is_claimed_that_is_not_known(
+        self, nodes: int, guaranteed: int, refuted: int | None, words: str
+    ) -> None:
+        row = Row("a", nodes, 0, False, guaranteed={"delayed": guaranteed}, refuted={"delayed": refuted})
+        assert headline(Survey((row,), ("delayed",)), rb.Gate()).startswith(words)
+        other = replace(row, network="b", guaranteed={"delayed": 5}, refuted={"delayed": 6}, nodes=12)
+        both = headline(Survey((row, other), ("delayed",)), rb.Gate())
+        assert both.startswith(f"{1 + words.startswith('The network survives')} of 2 networks survive")
+        assert ("1 was not decided within the limit" in both) == words.startswith("Whether")
+
     def test_all_pass(self) -> None:
         graphs = {"a": nx.complete_graph(7), "b": nx.complete_graph(8)}
         text = Tags(rb.report(graphs, gate=rb.Gate(r=3), models=["malicious"], pictures=False).html).text

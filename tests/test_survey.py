@@ -25,7 +25,7 @@ from robustness.files import write_topology
 from robustness.surveying.networks import expand
 from robustness.surveying.row import Row
 from robustness.surveying.state import Journal
-from robustness.surveying.tables import TABLES
+from robustness.surveying.tables import TABLES, cells
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -276,6 +276,15 @@ class TestTables:
         assert "late" in str(found)
         assert "late" in found._repr_html_()
         assert [row.gate for row in found.listed] == ["passed", "undecided"]
+
+    def test_a_single_node_survives_any_number_and_what_was_not_read_needs_no_links(self) -> None:
+        asked = rb.survey({"one": nx.path_graph(1)}, gate=rb.Gate(survive=5), mending=1.0)
+        rows = (Row("gone", gate="error", error="no such file"), *asked.rows)
+        models = ("malicious", "delayed")
+        head, gone, one = cells(rows, models)
+        assert [one[head.index(model)] for model in models] == ["any", "any"]
+        assert (gone[head.index("links")], gone[head.index("gate")], gone[-1]) == ("", "error", "no such file")
+        assert len({len(line) for line in (head, gone, one)}) == 1
 
     def test_a_frame_has_its_columns_without_rows_too(self) -> None:
         pytest.importorskip("pandas")

@@ -177,8 +177,8 @@ def _line(k: int, row: Row, line: Sequence[str], head: Sequence[str], section: S
 
 def _values(cell: str) -> str:
     """Return what a cell sorts by, and the upper end of an interval (empty where none is known) to filter by."""
-    low, dots, high = ("", "", "") if cell == "?" else cell.lstrip(">=").partition("..")
-    is_open = dots or cell.startswith(">=")
+    low, dots, high = {"?": ("", "", ""), "any": ("0", "", "")}.get(cell) or cell.lstrip(">=").partition("..")
+    is_open = dots or cell.startswith((">=", "any"))
     upper = f" data-upper='{escape(high, quote=True)}'" if is_open else ""
     return f"{upper} data-value='{escape(low, quote=True)}'"
 

@@ -20,7 +20,7 @@ from robustness.simulation.attacks import Attack
 from robustness.spelled import counted
 from robustness.surveying.row import Findings
 from robustness.threat_models import ToleranceTable
-from robustness.threat_models.results import number, sentences_of
+from robustness.threat_models.results import largest_survived, number, sentences_of
 
 __all__ = ["Film", "Section", "section_of"]
 
@@ -117,7 +117,7 @@ def section_of(findings: Findings, *, with_pictures: bool) -> Section:
     digest = sha256(Path(row.certificate).read_bytes()).hexdigest() if row.certificate else ""
     mending = () if findings.mended is None else tuple(in_sentences(findings.mended))
     models = tuple(
-        (result.model, result.threat.where, "any" if graph.n < 2 else number(result.guaranteed), number(result.refuted))
+        (result.model, result.threat.where, largest_survived(result), number(result.refuted))
         for result in findings.table.results
     )
     told = tuple(sentences_of(findings.table)) if models else ()

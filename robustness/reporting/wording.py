@@ -84,15 +84,29 @@ def _without_gate(survey: Survey, total: int) -> str:
     if not survey.models:
         told = counted(len(read), "network was", "networks were")
         return f"{told} looked at; nothing was required of {'it' if len(read) == 1 else 'them'}.{rest}"
-    survivors = sum(min(row.guaranteed.values()) >= 1 for row in read)
+    standing = Counter(map(_survives_one, read))
+    under = in_models(survey.models)
     if total == 1 and len(read) == 1:
-        survives = "survives" if survivors else "does not survive"
-        return f"The network {survives} 1 malicious node under {in_models(survey.models)}. Nothing was required of it."
+        verdicts = {
+            True: f"The network survives 1 malicious node under {under}.",
+            False: f"The network does not survive 1 malicious node under {under}.",
+            None: f"Whether the network survives 1 malicious node under {under} was not decided within the limit.",
+        }
+        return f"{verdicts[_survives_one(read[0])]} Nothing was required of it."
+    survivors, unknown = standing[True], standing[None]
     survive = plural(survivors, "survives", "survive")
+    open_ = f"; {counted(unknown, 'was', 'were')} not decided within the limit" if unknown else ""
     return (
-        f"{survivors or 'None'} of {counted(len(read), 'network')} {survive} 1 malicious node under "
-        f"{in_models(survey.models)}. Nothing was required of {'it' if len(read) == 1 else 'them'}.{rest}"
+        f"{survivors or 'None'} of {counted(len(read), 'network')} {survive} 1 malicious node under {under}{open_}. "
+        f"Nothing was required of {'it' if len(read) == 1 else 'them'}.{rest}"
     )
+
+
+def _survives_one(row: Row) -> bool | None:
+    """Return whether a network survives one malicious node under every model; None where that was not decided."""
+    if (row.nodes or 0) < 2 or min(row.guaranteed.values()) >= 1:
+        return True
+    return False if any(f is not None and f <= 1 for f in row.refuted.values()) else None
 
 
 def in_words(row: Row, models: Sequence[str]) -> str:

@@ -40,8 +40,8 @@ def cells(rows: Sequence[Row], models: Sequence[str]) -> list[list[str]]:
     """Return the table that a person reads: a head, then a line for each row.
 
     An interval stands where a limit left one: ``2..4``. Under a model stands the largest f that is guaranteed, and
-    ``0..2`` when f = 3 is the smallest that is refuted and nothing is known in between. Under "links" stands how many
-    further links mend the network, where that was asked.
+    ``0..2`` when f = 3 is the smallest that is refuted and nothing is known in between; ``any`` of a single node. Under
+    "links" stands how many further links mend the network, where that was asked.
     """
     has_gate = any(row.gate for row in rows)
     has_links = any(row.links_at_least is not None for row in rows)
@@ -54,9 +54,11 @@ def _line(row: Row, models: Sequence[str], has_gate: bool, has_links: bool = Fal
     gate = [row.gate] if has_gate else []
     gate += [_interval(row.links_at_least, row.links)] if has_links else []
     if row.error:
-        return [row.network, *[""] * (4 + len(models)), *gate, "", row.error]
+        return [row.network, *[""] * (4 + len(models)), *gate[:has_gate], *[""] * has_links, "", row.error]
     known = [_interval(row.r, row.r_at_most), _interval(row.s, row.s_at_most)]
     promised = [_interval(row.guaranteed.get(each), _before(row.refuted.get(each))) for each in models]
+    if row.nodes is not None and row.nodes < 2:  # nobody can disagree
+        promised = ["any"] * len(models)
     note = "directed" if row.directed else ""
     return [row.network, str(row.nodes), str(row.arcs), *known, *promised, *gate, f"{row.seconds:.2f}", note]
 

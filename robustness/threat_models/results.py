@@ -274,7 +274,7 @@ class ToleranceTable(Shown, Mapping[str, ToleranceResult]):
     def evidence(self) -> list[tuple[str, str]]:
         """Return the table, as rows of a model and what is known."""
         return [
-            (result.model, f"guaranteed f = {number(result.guaranteed)}, refuted f = {number(result.refuted)}")
+            (result.model, f"guaranteed f = {largest_survived(result)}, refuted f = {number(result.refuted)}")
             for result in self.results
         ]
 
@@ -286,6 +286,11 @@ class ToleranceTable(Shown, Mapping[str, ToleranceResult]):
 def number(f: int | None) -> str:
     """Return an f as people write it: ``none`` for -1 and None."""
     return "none" if f is None or f < 0 else str(f)
+
+
+def largest_survived(result: ToleranceResult) -> str:
+    """Return the largest f guaranteed as people write it: ``any`` where nobody can disagree."""
+    return "any" if result.graph.n < 2 else number(result.guaranteed)
 
 
 def _outcome(result: ToleranceResult) -> str:

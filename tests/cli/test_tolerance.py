@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -126,6 +127,12 @@ class TestJson:
         found = document()
         assert [model["model"] for model in found["models"]] == list(MODELS)
         assert found["require"] is None
+
+
+def test_a_single_node_survives_any_number() -> None:
+    one = encode_topology(nx.path_graph(1))
+    assert tolerance("-q", graph=one).stdout.startswith("guaranteed f: malicious any, ")
+    assert re.search(r"^delayed +any +none  -$", tolerance(graph=one).stdout, re.MULTILINE)
 
 
 class TestGate:
