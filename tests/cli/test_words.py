@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import pty
 import re
@@ -185,3 +186,21 @@ class TestOnATerminal:
 def test_one_line_with_q_also_of_an_experiment() -> None:
     outcome = CliRunner().invoke(robustness, ["simulate", "--experiment", "necessity", "-q"])
     assert re.fullmatch(r"Theorem 1, necessity: .*: 12 of 12 cases as reported\n", outcome.stdout)
+
+
+def test_pages_and_pictures_have_documents_too(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    net, page, picture = (str(tmp_path / name) for name in ("net.json", "page.html", "net.svg"))
+    write_topology(nx.cycle_graph(6), net)
+    report = CliRunner().invoke(robustness, ["report", net, "-r", "2", "--no-models", "-o", page, "--json"])
+    found = json.loads(report.stdout)
+    assert (report.exit_code, found["schema"], found["output"]) == (10, "robustness/report/1", page)
+    assert found["verdict"] == "The network must be (2,1)-robust; it fails, with a counterexample."
+    assert ([row["gate"] for row in found["rows"]], found["is_complete"]) == (["refuted"], True)
+    drawn = CliRunner().invoke(robustness, ["draw", net, "-r", "2", "-o", picture, "--json"])
+    found = json.loads(drawn.stdout)
+    assert (drawn.exit_code, found["schema"], found["verdict"]) == (0, "robustness/draw/1", "not-robust")
+    assert (found["graph"]["nodes"], found["output"], found["summary"]) == (6, picture, "not (2,1)-robust")
+    for command in ("report", "draw"):
+        wrong = CliRunner().invoke(robustness, [command, net, "-o", net, "--json"])
+        assert (wrong.exit_code, json.loads(wrong.stdout)["schema"]) == (2, "robustness/error/1")
