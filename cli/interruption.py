@@ -17,7 +17,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import TypeVar
 
-__all__ = ["FAR_GRACE", "GRACE", "Overrun", "end_process", "interruptibly"]
+__all__ = ["FAR_GRACE", "GRACE", "Overrun", "end_process", "interruptibly", "is_left_behind"]
 
 #: Seconds that work may take beyond its time limit to come back with what it knows.
 GRACE = 0.5
@@ -78,9 +78,14 @@ def interruptibly(
     return results[0]
 
 
+def is_left_behind() -> bool:
+    """Return whether there is work that nobody waits for any more; then the process will end at once."""
+    return any(thread.is_alive() for thread in _abandoned)
+
+
 def end_process(code: int) -> None:
     """End the process with ``code``; at once, without waiting for other threads, when work was left behind."""
-    if any(thread.is_alive() for thread in _abandoned):
+    if is_left_behind():
         from robustness.files.writing import forget_unfinished
 
         forget_unfinished()

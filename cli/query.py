@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from .interruption import interruptibly
+from .interruption import interruptibly, is_left_behind
 from .options import algorithm_option, jobs_option, json_option, seed_option, talk_options, timeout_option
 from .output import ProgressLine, pass_console
 
@@ -38,11 +38,28 @@ cubes_option = click.option(
 )
 
 
+_left_open: list[Any] = []
+
+
 def joined_cluster(address: str) -> Any:
-    """Return a client of the cluster, which is left when the command ends."""
+    """Return a client of the cluster, which is left when the command ends.
+
+    Ctrl-C ends the wait for it to start. Where work is left behind nobody waits for the workers to end, either: those
+    of this machine end with this process, and a scheduler drops what a client wanted that is gone.
+    """
     from robustness.cubes import opened_cluster
 
-    return click.get_current_context().with_resource(opened_cluster(address))
+    cluster = opened_cluster(address)
+    client = interruptibly(cluster.__enter__)
+
+    def leave() -> None:
+        if is_left_behind():
+            _left_open.append(cluster)  # a generator that nobody has any more would be closed
+        else:
+            cluster.__exit__(None, None, None)
+
+    click.get_current_context().call_on_close(leave)
+    return client
 
 
 def _processes_here(cluster: str | None) -> int:

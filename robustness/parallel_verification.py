@@ -268,7 +268,7 @@ def _chosen(trees: Iterable[tuple[int, int]], size: int) -> Cubes:
     chosen: list[tuple[int, int]] = []
     end = 0
     for start, length in sorted(trees, key=lambda tree: (tree[0], -tree[1])) if size > _WORTH_IT else ():
-        if start >= end and length <= size // _PARTS:
+        if start >= end and 0 < length <= size // _PARTS:
             chosen.append((start, length))
             end = start + length
     return tuple(chosen)

@@ -69,6 +69,12 @@ def test_where_trees_are_in_a_transcript() -> None:
     assert sorted(found.trees) == [(2, 3), (2, 4), (4, 0)]
 
 
+def test_no_tree_without_a_byte_is_verified_apart() -> None:
+    """A state that is contradictory at once leaves none: two trees would begin where one does."""
+    index = parallel_verification._chosen([(0, 0), (7, 0), (7, 5), (12, 0), (12, 3), (12, 0)], 2**20)
+    assert index == ((7, 5), (12, 3))
+
+
 def test_threads_keep_pieces_at_the_same_time() -> None:
     spool = Spool()
     pieces: dict[int, Piece] = {}

@@ -10,15 +10,19 @@ from __future__ import annotations
 
 import concurrent.futures
 import importlib
+import os
 import queue
+import signal
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
+from multiprocessing import resource_tracker
 from typing import Any, Protocol, TypeVar, runtime_checkable
 
 from robustness.cubes.solving import solve
 from robustness.errors import InvalidParameter, MissingExtra, Undecided
+from robustness.waiting import in_a_thread
 
 __all__ = ["CubeExecutor", "cube_executor", "mapped", "opened_cluster", "require_executor"]
 
@@ -246,23 +250,51 @@ def opened_cluster(address: str) -> Iterator[Any]:
             client = distributed.Client(address, timeout=10)
         except (OSError, ValueError) as problem:
             raise InvalidParameter(f"no scheduler answers at {address}: start one with 'dask scheduler'") from problem
-        with client:
+        with closing(client):  # which may be another thread's, as its own context may not
             yield client
         return
-    with _local_cluster(distributed, int(rest)) as local, distributed.Client(local) as client:
+    with closing(_local_cluster(distributed, int(rest))) as local, closing(distributed.Client(local)) as client:
         yield client
+
+
+def _leave_ctrl_c_to_others() -> None:
+    """Let Ctrl-C, which a terminal sends to all processes of a command, end none that this thread starts.
+
+    Threads and processes inherit what is blocked. So workers do not cry out one by one: they end with their parent.
+    """
+    if not hasattr(signal, "pthread_sigmask"):  # on Windows
+        return
+    # Python's process that clears away what others leave would unblock it when it is started later, and complain of
+    # all that it clears when the command ends at once.
+    warned = os.environ.get("PYTHONWARNINGS")
+    os.environ["PYTHONWARNINGS"] = ",".join(
+        filter(None, (warned, "ignore::UserWarning:multiprocessing.resource_tracker"))
+    )
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        if warned is None:
+            del os.environ["PYTHONWARNINGS"]
+        else:
+            os.environ["PYTHONWARNINGS"] = warned
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
 
 
 def _local_cluster(distributed: Any, count: int) -> Any:
     """Return a cluster of processes on this machine; a start that fails, for a process was killed, is tried again."""
     # Dask starts a server for its status even where none is wanted: at a port that is free, and for this machine alone.
     status = {"dashboard": False, "dashboard_address": "127.0.0.1:0"}
+
+    def start() -> Any:
+        _leave_ctrl_c_to_others()
+        return distributed.LocalCluster(
+            n_workers=count, threads_per_worker=1, processes=True, silence_logs=50, scheduler_kwargs=status
+        )
+
     why: Exception | None = None
     for _ in range(_STARTS):
         try:
-            return distributed.LocalCluster(
-                n_workers=count, threads_per_worker=1, processes=True, silence_logs=50, scheduler_kwargs=status
-            )
+            return in_a_thread("cluster", start)
         except (RuntimeError, OSError) as problem:
             why = problem
     raise Undecided(f"nothing is decided: local:{count} did not start ({why})")

@@ -53,7 +53,8 @@ class CubeJournal:
     Raises
     ------
     InvalidParameter
-        When the file is no journal of cubes, a line before the last is damaged, or another run writes to it.
+        When the file is no journal of cubes, or no regular file, a line before the last is damaged, or another run
+        writes to it.
     OSError
         When it cannot be read or written.
     """
@@ -63,28 +64,33 @@ class CubeJournal:
         self.spool = Spool()
         self._question, self._words = question, words
         self._stream: IO[bytes] | None = None
+        self._path = path
         self._synced = time.monotonic()
         if path is None:
             return
+        if path.exists() and not path.is_file():
+            raise InvalidParameter(f"{path} is no regular file, and a journal is one: name another file")
         self._stream = open(path, "a+b")  # noqa: SIM115 - closed by __exit__
         try:
             _lock(self._stream, path)
             self._stream.truncate(self._read(path))
+            if not self._stream.tell():
+                self._append({"format": _FORMAT})
         except BaseException:
-            self._stream.close()
+            with suppress(OSError):
+                self._stream.close()
             raise
-        if not self._stream.tell():
-            self._append({"format": _FORMAT})
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, tb: TracebackType | None) -> None:
         if self._stream is not None:
-            self._stream.flush()
-            with suppress(OSError):
+            with suppress(OSError):  # of a full disk it has been told
+                self._stream.flush()
                 os.fsync(self._stream.fileno())
-            self._stream.close()
+            with suppress(OSError):
+                self._stream.close()
 
     def remember(self, cube: Cube, entry: Entry, transcript: bytes) -> None:
         """Append what came of a cube; it is in the hands of the system when this returns."""
@@ -107,11 +113,14 @@ class CubeJournal:
         if self._stream is None:
             return
         text = json.dumps(content, separators=(",", ":")).encode("ascii")
-        self._stream.write(_checksum(text) + b" " + text + b"\n")
-        self._stream.flush()
-        if time.monotonic() - self._synced > _SYNC:
-            os.fsync(self._stream.fileno())
-            self._synced = time.monotonic()
+        try:
+            self._stream.write(_checksum(text) + b" " + text + b"\n")
+            self._stream.flush()
+            if time.monotonic() - self._synced > _SYNC:
+                os.fsync(self._stream.fileno())
+                self._synced = time.monotonic()
+        except OSError as problem:  # which does not say of which file
+            raise OSError(problem.errno, problem.strerror or str(problem), str(self._path)) from None
 
     def _read(self, path: Path) -> int:
         """Read all whole lines; return where they end."""

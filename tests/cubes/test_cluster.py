@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
@@ -233,3 +234,53 @@ def test_two_local_clusters_at_a_time_say_nothing_of_ports(recwarn: pytest.Warni
     with opened_cluster("local:1"), opened_cluster("local:1"):
         pass
     assert not [each for each in recwarn if "already in use" in str(each.message)]
+
+
+def is_there(group: int) -> bool:
+    """Return whether any process of a group is left."""
+    try:
+        os.killpg(group, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+@pytest.mark.parametrize(
+    ("command", "lines"),
+    [
+        (["check", "-r", str(ENDLESS[1]), "--state", "state"], 6),
+        (["certify", "-r", str(ENDLESS[1]), "-o", "proof", "--state", "state"], 0),
+        (["survey"], 0),
+    ],
+    ids=["check, at work", "certify, that starts", "survey"],
+)
+def test_ctrl_c_at_a_terminal_goes_to_all_processes_and_ends_in_a_word(
+    command: list[str], lines: int, tmp_path: Path
+) -> None:
+    """No worker cries out, none is left, and nobody waits for them."""
+    (tmp_path / "net.json").write_bytes(ENDLESS[0].canonical_bytes())
+    process = subprocess.Popen(
+        [sys.executable, "-m", "robustness", command[0], "net.json", *command[1:], "--cluster", "local:2"],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    with process:
+        state, ends = tmp_path / "state", time.monotonic() + 120
+        while lines and time.monotonic() < ends and not (state.exists() and state.read_bytes().count(b"\n") > lines):
+            time.sleep(0.05)
+        if not lines:
+            time.sleep(2)
+        os.killpg(process.pid, signal.SIGINT)
+        _, said = process.communicate(timeout=60)
+    ends = time.monotonic() + 30
+    while is_there(process.pid) and time.monotonic() < ends:
+        time.sleep(0.1)
+    assert process.returncode == 130
+    assert "Traceback" not in said
+    assert "warn" not in said
+    assert "interrupted: " in said
+    assert not is_there(process.pid)

@@ -17,7 +17,7 @@ import networkx as nx
 import pytest
 
 import robustness as rb
-from robustness.cubes import spreading
+from robustness.cubes import journal, spreading
 from robustness.cubes.journal import CubeJournal
 from tests.cubes.instances import LONG, MIDDLE, SMALL
 
@@ -25,6 +25,7 @@ from tests.cubes.instances import LONG, MIDDLE, SMALL
 @pytest.fixture(autouse=True)
 def short_slices(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(spreading, "_FIRST_SLICE", 0.01)
+    monkeypatch.setattr(spreading, "_LONGEST_SLICE", 0.01)
 
 
 @pytest.fixture
@@ -101,6 +102,27 @@ def test_a_line_that_is_no_object_is_refused(text: str, half: Path) -> None:
     half.write_bytes(checked(text))
     with pytest.raises(rb.InvalidParameter, match="is no journal of cubes"):
         rb.check_rs_robustness(*SMALL, state=half)
+
+
+@pytest.mark.parametrize("name", ["/dev/null", "/dev/zero", "/dev/full", "pipe"])
+def test_a_device_or_a_pipe_is_no_journal(name: str, tmp_path: Path) -> None:
+    """It is not read, which might never end."""
+    path = tmp_path / name  # a name that begins with a slash stays what it is
+    if name == "pipe":
+        os.mkfifo(path)
+    with pytest.raises(rb.InvalidParameter, match="is no regular file"):
+        rb.check_rs_robustness(*SMALL, state=path)
+
+
+def test_a_full_disk_is_told_by_the_name_of_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(descriptor: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    monkeypatch.setattr(journal, "_SYNC", 0.0)
+    with pytest.raises(OSError, match="No space left on device") as raised:
+        rb.check_rs_robustness(*SMALL, state=tmp_path / "state")
+    assert raised.value.filename == str(tmp_path / "state")
 
 
 def test_what_is_no_journal_is_left_alone(tmp_path: Path) -> None:
