@@ -20,8 +20,14 @@ from typing import Any, NamedTuple
 
 __all__ = ["DEFAULT_CHOICES", "no_choice_is_cheaper"]
 
-#: Nodes of the tree that are looked at unless more are asked for: some ten seconds at most on 30 nodes.
+#: Nodes of the tree that are looked at unless more are asked for: some ten seconds on 30 nodes and few hundred pairs.
 DEFAULT_CHOICES = 10_000
+
+#: Links times links, units and sets of covers: where there is more there is no tree. It takes seconds to write down.
+_MOST_WORK = 2**27
+
+#: How often links are given up at one node.
+_ROUNDS = 8
 
 #: More links than there are.
 _NEVER = 1 << 62
@@ -59,6 +65,8 @@ def no_choice_is_cheaper(
     ``document`` is the header of a mending certificate of which all else has been verified; ``may_go_on`` is asked with
     the nodes looked at so far. False says nothing: it said no, or a cheaper choice meets the demands written down.
     """
+    if not may_go_on(0) or _work(len(hears), document) > _MOST_WORK:
+        return False
     problem = _Problem(hears, document)
     path, looked = [iter([problem.root])], 0
     while path:
@@ -79,6 +87,15 @@ def no_choice_is_cheaper(
     return True
 
 
+def _work(n: int, document: dict[str, Any]) -> int:
+    """Return how many bits are written down, about: a mask of links for each unit."""
+    links = len(document["actions"]["links"])
+    local = [part.get("bound") == "local" for part in document["claim"]["parts"]]
+    units = sum(n * local[k] + len(S1) + len(S2) for k, _, S1, S2 in document["pairs"])
+    units += sum(len(sets) + sum(map(len, starts)) for _, starts, *sets in document["covers"])
+    return int(links * (links + units))
+
+
 class _Problem:
     """What a certificate demands of a choice, over masks of its links."""
 
@@ -90,9 +107,10 @@ class _Problem:
         self._cheapest = min((cost for *_, cost in self._links), default=0)
         self._into: list[dict[int, int]] = [{} for _ in hears]
         for a, (u, v, _) in enumerate(self._links):
+            link = 1 << a
             for tail, head in ((u, v),) if actions["one_way"] else ((u, v), (v, u)):
                 if tail not in self._hears[head]:
-                    self._into[head][tail] = 1 << a
+                    self._into[head][tail] = link
         self._caps = [(sum(self._into[i].values()), most) for i, most in enumerate(actions["most"] or ())]
         everything = sum(cost for *_, cost in self._links)
         may_cost = everything if claim["least"] is None else claim["least"] - 1
@@ -103,7 +121,8 @@ class _Problem:
         chosen = sum(1 << a for a in actions["required"])
         spent = sum(self._links[a][2] for a in actions["required"])
         free = self._within_caps(chosen, (1 << len(self._links)) - 1 & ~chosen)
-        self.root = _Node(chosen, free, may_cost - spent, list(dict.fromkeys(demands)))
+        is_possible = all((chosen & links).bit_count() <= most for links, most in self._caps)
+        self.root = _Node(chosen, free, may_cost - spent if is_possible else -1, list(dict.fromkeys(demands)))
 
     def _of_pair(self, part: dict[str, Any], M: list[int], *sides: list[int]) -> _Demand:
         """Return what a violation demands."""
@@ -130,9 +149,12 @@ class _Problem:
 
     def _is_affordable(self, cover: list[list[int]], r: int, may_cost: int) -> bool:
         """Return whether the links that a cover lacks can be had, outside all of its sets."""
-        sets = [frozenset(V) for V in cover]
-        lacking = _room(len(self._hears), r) - sum(_room(len(V), r) for V in sets)
-        outside = sorted(cost for u, v, cost in self._links if not any(u in V and v in V for V in sets))
+        holding: list[set[int]] = [set() for _ in self._hears]
+        for k, V in enumerate(cover):
+            for i in V:
+                holding[i].add(k)
+        lacking = _room(len(self._hears), r) - sum(_room(len(V), r) for V in cover)
+        outside = sorted(cost for u, v, cost in self._links if holding[u].isdisjoint(holding[v]))
         return lacking <= len(outside) and sum(outside[: max(0, lacking)]) <= may_cost
 
     def _within_caps(self, chosen: int, free: int) -> int:
@@ -147,7 +169,9 @@ class _Problem:
         chosen, free, budget, demands = node
         if budget < 0:
             return None
+        rounds = 0
         while True:
+            rounds += 1
             unmet: list[tuple[int, int, int, int]] = []
             for place, demand in enumerate(demands):
                 least, links = _needs(demand, chosen, free)
@@ -164,7 +188,8 @@ class _Problem:
             if needed * self._cheapest > budget:
                 return None
             demands = [demands[place] for _, _, place, _ in unmet]
-            if not unmet or (needed + 1) * self._cheapest <= budget or not free & ~apart:
+            are_spare = (needed + 1) * self._cheapest <= budget
+            if not unmet or are_spare or not free & ~apart or rounds == _ROUNDS:
                 return _Node(chosen, free, budget, demands), unmet[0][3] if unmet else 0
             free &= apart
 

@@ -56,8 +56,8 @@ class VerifiedMendingClaim:
     goal: str
     #: What the chosen links cost, in units of the certificate; None when none were chosen.
     cost: int | None
-    #: No choice that breaks all violations costs less. None: none breaks them all. A solver has to confirm it unless
-    #: ``is_least`` is true.
+    #: No choice that breaks all violations, and does what the covers demand, costs less. None: there is none. A solver
+    #: has to confirm it unless ``is_least`` is true.
     least: int | None
     links: int
     violations: int

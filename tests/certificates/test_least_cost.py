@@ -88,12 +88,11 @@ def question(rng: random.Random) -> tuple[Digraph, dict[str, Any]]:
                 (S1 if rng.random() < 0.5 else S2).append(i)
         if S1 and S2 and violates(graph, parts[k], M, sorted(S1), sorted(S2)):
             pairs.append([k, M, sorted(S1), sorted(S2)])
-    capped = rng.random() < 0.3  # then nothing is required: what is may not break a cap
     actions = {
         "one_way": one_way,
         "links": [[u, v, rng.choice([0, 1, 1, 2, 5]) if few else 1] for u, v in links],
-        "required": sorted(rng.sample(range(len(links)), 0 if capped else min(len(links), rng.choice([0, 0, 1, 2])))),
-        "most": [rng.randint(0, 3) for _ in range(n)] if capped else None,
+        "required": sorted(rng.sample(range(len(links)), min(len(links), rng.choice([0, 0, 1, 2])))),
+        "most": [rng.randint(0, 3) for _ in range(n)] if rng.random() < 0.3 else None,
         "chosen": None,
     }
     return graph, {
@@ -165,7 +164,7 @@ def test_it_stops_when_it_is_told_to() -> None:
         return looked < 5
 
     assert not verify_mending(path.canonical_bytes(), data, may_go_on).is_least
-    assert asked == [0, 1, 2, 3, 4, 5]
+    assert asked == [0, 0, 1, 2, 3, 4, 5]
     assert not verify_mending(path.canonical_bytes(), data).is_least
 
 
@@ -182,3 +181,32 @@ def test_a_cover_whose_links_can_be_paid_for_demands_nothing() -> None:
     document["covers"] = [[0, [[0, 1]], [0, 1], [1, 2], [2, 3], [3, 4]]]
     told = json.dumps(document).encode() + b"\n" + body
     assert verify_mending(path.canonical_bytes(), told, lambda looked: looked < 1_000).is_least
+
+
+def test_a_long_chain_of_links_given_up_is_cut() -> None:
+    """Each round at the root gives up one link more; it is the nodes that may_go_on counts, so rounds are few."""
+    n = 40
+    pairs = [[0, [], [0, e], [2 if e == 1 else 1]] for e in range(1, n)]
+    header = {
+        "claim": {"parts": [{"r": 1, "s": 1}], "cost": None, "least": 2},
+        "actions": {"one_way": True, "links": [[j, 0, 1] for j in range(1, n)], "required": [], "most": None},
+        "pairs": pairs,
+        "covers": [],
+    }
+    asked: list[int] = []
+    assert no_choice_is_cheaper([[]] * n, header, lambda looked: not asked.append(looked))  # type: ignore[func-returns-value]
+    assert len(asked) > 2
+    header["claim"]["least"] = 3  # type: ignore[index]
+    assert not no_choice_is_cheaper([[]] * n, header, lambda looked: True)
+
+
+def test_what_is_too_large_to_write_down_has_no_tree(monkeypatch: pytest.MonkeyPatch) -> None:
+    path = as_digraph(nx.path_graph(6))
+    data = certify_mending(rb.mend(path, (2, 2)))
+    assert data is not None
+    assert verify_mending(path.canonical_bytes(), data, lambda looked: looked < 1_000).is_least
+    monkeypatch.setattr("certificates.least_cost._MOST_WORK", 100)
+    assert not verify_mending(path.canonical_bytes(), data, lambda looked: True).is_least
+    asked: list[int] = []
+    assert not verify_mending(path.canonical_bytes(), data, asked.append).is_least  # type: ignore[arg-type]
+    assert asked == [0]
