@@ -256,6 +256,7 @@ def _write_evidence(console: Console, report: Report, folder: Path, query: Query
                 write(path, data, f" ({len(data):,} {plural(len(data), 'byte')}, verified)")
             elif f is not None and f >= 0:
                 why = "too large, or a limit was reached" if report.graph.n >= 2 else "nobody can disagree"
+                why = "it holds only over time, of which no certificate speaks" if what in found.over_time else why
                 console.talk(f"no certificate of {result.model}, f = {f} {what}: {why}")
         if result.attack is not None:
             text = json.dumps(result.attack.as_dict(), indent=1) + "\n"

@@ -54,6 +54,8 @@ class ToleranceCertificates:
 
     guaranteed: bytes | None
     refuted: bytes | None
+    #: What of the two holds only over time.
+    over_time: frozenset[str] = frozenset()
 
 
 def certify_tolerance(
@@ -81,11 +83,16 @@ def certify_tolerance(
     apart
     """
     work = _Work(result.graph, Limits.of(time_limit, jobs, seed, progress))
-    guaranteed = None
+    guaranteed, over_time = None, set()
     if result.graph.n >= 2 and result.guaranteed >= 0:
-        over_time, question = result.over_time, result.threat.question(result.guaranteed)
-        guaranteed = work.promise_over_time(result) if over_time else work.promise(question)
-    return ToleranceCertificates(guaranteed, _refutation(result))
+        if result.over_time:
+            guaranteed, is_joint = work.promise_over_time(result)
+            over_time |= set() if is_joint else {"guaranteed"}
+        else:
+            guaranteed = work.promise(result.threat.question(result.guaranteed))
+    if result.attack_sets is not None and result.attack_sets.remembered:
+        over_time.add("refuted")
+    return ToleranceCertificates(guaranteed, _refutation(result), frozenset(over_time))
 
 
 def certify_promise(graph: Digraph, question: Question, limits: Limits) -> bytes | None:
@@ -113,16 +120,19 @@ class _Work:
             return self.twice_robust(question) or self.refutation(question)
         return self.refutation(question)
 
-    def promise_over_time(self, result: ToleranceResult) -> bytes | None:
-        """Return a certificate that the sequence is jointly (2f+1)-robust, over the smallest number of steps."""
+    def promise_over_time(self, result: ToleranceResult) -> tuple[bytes | None, bool]:
+        """Return a certificate that the sequence is jointly (2f+1)-robust, and False where it is not within tau."""
         from robustness.time_varying import certify_joint
 
         if result.sequence is None or self.limits.expired():
-            return None
+            return None, True
         r = 2 * result.guaranteed + 1
         found, certificate = certify_joint(result.sequence, r, **self.limits.keywords())
         most = result.longest_window
-        return certificate if found.window is not None and most is not None and found.window <= most else None
+        is_late = most is not None and found.at_least > most
+        if found.verdict is Verdict.NOT_ROBUST or is_late:
+            return None, False
+        return certificate if found.window is not None else None, True
 
     def robust(self, graph: Digraph, r: int, s: int = 1) -> bytes | None:
         """Return an ordinary certificate of (r,s)-robustness, or None when it is not robust or the time is up."""

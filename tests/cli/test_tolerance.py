@@ -333,3 +333,18 @@ def test_what_was_decided_before_a_stop_is_kept(stop: type[BaseException], monke
     assert [found[name]["guaranteed"] for name in judged[:2]] == [1, 1]
     assert len(found) == 6
     assert sorted(judged) == sorted(found), "each model is judged once: finished before, or by lemmas after the stop"
+
+
+def test_what_holds_only_over_time_is_said_to_have_no_certificate(tmp_path: Path) -> None:
+    sequence = str(Path(__file__).parents[2] / "examples" / "round-robin.json")
+    outcome = CliRunner().invoke(
+        robustness, ["tolerance", sequence, "--model", "delayed", "--tau", "12", "-o", str(tmp_path)]
+    )
+    for claim in ("f = 0 guaranteed", "f = 1 refuted"):
+        assert f"no certificate of delayed, {claim}: it holds only over time" in outcome.stderr
+
+
+def test_a_command_about_one_network_names_those_about_many_steps() -> None:
+    sequence = str(Path(__file__).parents[2] / "examples" / "round-robin.json")
+    outcome = CliRunner().invoke(robustness, ["attack", sequence])
+    assert (outcome.exit_code, "'joint' and 'tolerance --tau' read it" in outcome.stderr) == (3, True)
