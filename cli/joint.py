@@ -139,6 +139,10 @@ def command(
     if all_windows and window is None:
         raise click.UsageError("--all-windows decides every window of one length: give --window as well.")
     require_different_files([source], [picture, certificate, canonical])
+    if picture is not None:
+        from robustness.figures.saving import picture_format
+
+        picture_format(picture)  # before the work that it might be lost for
     sequence = load_sequence(source, period=period, step=step, both_ways=both_ways)
     with ProgressLine(console) as line:
         survey = Survey(sequence, r, s, tau, Clock(query.timeout), query, line)

@@ -83,4 +83,13 @@ class Simulation:
         from robustness.files.writing import require_different_files
 
         inputs = [self.source, self.replay, self.attack_file, self.certificate]
-        require_different_files(inputs, [self.save, self.plot, self.animate])
+        require_different_files(inputs, [self.save, self.plot, self.animate], makes_folders=True)
+        # Before the work that it might be lost for.
+        if self.plot is not None and (self.plot.suffix or self.experiment is None):
+            from robustness.figures.saving import picture_format
+
+            picture_format(self.plot)
+        if self.animate is not None:
+            from robustness.figures.animation import film_format
+
+            film_format(self.animate)

@@ -156,7 +156,7 @@ def command(
     if output is not None:
         from robustness.files.writing import require_different_files
 
-        require_different_files([source], [output / "graph.json", output / "sequence.json"])
+        require_different_files([source], [output / "graph.json", output / "sequence.json"], makes_folders=True)
     network, graph = _load(source, tau, period)
     _prepare()
     started = time.perf_counter()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import stat
 import threading
 from collections.abc import Iterator
@@ -149,3 +150,22 @@ def test_half_a_map_is_not_written(tmp_path: Path) -> None:
     assert rb.Digraph.from_networkx(half).places is None
     write_topology(half, tmp_path / "half.json")
     assert "pos" not in (tmp_path / "half.json").read_text(encoding="utf-8")
+
+
+LINES = [
+    "survey GRAPH -o OUT.csv", "survey GRAPH --state OUT", "report GRAPH -o OUT.html", "draw GRAPH -r 2 -o OUT.svg",
+    "find -n 4 -p 1-robust -o OUT.json", "attack GRAPH -o OUT.json", "mend GRAPH -r 2 -o OUT.json",
+    "certify GRAPH -r 1 -o OUT.cert", "simulate GRAPH --steps 3 --save GRAPH/out.json",
+    "tolerance GRAPH -o GRAPH/evidence", "simulate GRAPH --plot x.odd", "simulate GRAPH --animate x.png",
+    "joint GRAPH -r 1 --plot x.odd",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("line", LINES)
+def test_no_work_is_done_for_a_place_that_cannot_be_written(line: str, tmp_path: Path) -> None:
+    graph = str(Path(__file__).parent / "data" / "square.json")
+    arguments = line.replace("OUT", str(tmp_path / "none" / "out")).replace("GRAPH", graph).split()
+    outcome = CliRunner().invoke(robustness, arguments)
+    assert outcome.exit_code == 2
+    assert re.match("error: (cannot write|a picture's suffix|an animation's suffix) ", outcome.stderr)
+    assert outcome.stdout == ""

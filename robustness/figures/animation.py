@@ -15,14 +15,22 @@ from robustness.errors import InvalidParameter, MissingExtra
 from robustness.figures.saving import new_figure
 from robustness.figures.simulation import GROUP_COLORS, LIAR_COLOR, Run, position_in_words, recorded, run_title
 from robustness.figures.time_span import last_step_shown
-from robustness.figures.wording import nodes_in_words, plain
+from robustness.figures.wording import Names
 from robustness.files import replace_file
 from robustness.natural_order import in_natural_order
 
-__all__ = ["animate"]
+__all__ = ["animate", "film_format"]
 
 #: Frames of a film, and frames a second.
 _FRAMES, _RATE = 90, 12
+
+
+def film_format(path: str | os.PathLike[str]) -> str:
+    """Return the suffix of a film's path, or raise :class:`InvalidParameter`."""
+    suffix = os.path.splitext(os.fspath(path))[1].lower()
+    if suffix not in (".gif", ".html"):
+        raise InvalidParameter(f"an animation's suffix is .gif or .html, not {suffix!r}")
+    return suffix
 
 
 def animate(run: Run, path: str | os.PathLike[str], *, last_step: int | None = None) -> None:
@@ -38,9 +46,7 @@ def animate(run: Run, path: str | os.PathLike[str], *, last_step: int | None = N
     InvalidParameter
         When the run was not recorded, or the suffix is neither.
     """
-    suffix = os.path.splitext(os.fspath(path))[1].lower()
-    if suffix not in (".gif", ".html"):
-        raise InvalidParameter(f"an animation's suffix is .gif or .html, not {suffix!r}")
+    suffix = film_format(path)
     states = recorded(run)
     try:
         from matplotlib.animation import FuncAnimation, PillowWriter
@@ -55,15 +61,15 @@ def animate(run: Run, path: str | os.PathLike[str], *, last_step: int | None = N
     figure = new_figure(7.0, 1.4 + min(0.32 * len(labels), 6.0))
     axes = figure.subplots()
     shown = states.p[: end + 1, normal] if normal else states.p[: end + 1]
-    low, high = float(shown.min()), float(shown.max())
+    low, high = (float(shown.min()), float(shown.max())) if shown.size else (0.0, 1.0)
     margin = 0.1 * (high - low) or 1.0
     axes.set_xlim(low - margin, high + margin)
     axes.set_ylim(-0.8, len(labels) + 0.3)  # a lane more for the clock
-    in_order = in_natural_order(labels)
-    axes.set_yticks(range(len(labels)), [plain(each) for each in in_order], fontsize=max(4, 9 - len(labels) // 12))
+    in_order, named = in_natural_order(labels), Names(labels)
+    axes.set_yticks(range(len(labels)), [named(each) for each in in_order], fontsize=max(4, 9 - len(labels) // 12))
     axes.invert_yaxis()
     lane = np.argsort([labels.index(each) for each in in_order])
-    claimed = f"\ncross: what {nodes_in_words([labels[i] for i in bad], 4)} claims, at the edge when farther out"
+    claimed = f"\ncross: what {named.together([labels[i] for i in bad], 4)} claims, at the edge when farther out"
     axes.set_xlabel(position_in_words(run.scenario) + (claimed if bad else ""))
     axes.set_title(run_title(run), fontsize=10, loc="left")
     axes.grid(axis="y", alpha=0.3)

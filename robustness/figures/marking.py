@@ -13,7 +13,7 @@ from typing import Any
 from certificates.graph import Label
 from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
-from robustness.figures.wording import nodes_in_words
+from robustness.figures.wording import Names
 
 __all__ = ["Marks", "marks_of"]
 
@@ -135,7 +135,8 @@ def _title(answer: Any) -> str:
         return f"{answer.threat.name}: agreement for f <= {answer.guaranteed}, {refuted}"
     if getattr(answer, "kind", None) and hasattr(answer, "malicious"):
         who: frozenset[Label] = answer.malicious
-        liars = nodes_in_words(who) if who else "nobody"
+        everybody = answer.graph.labels if hasattr(answer, "graph") else who
+        liars = Names(everybody).together(who) if who else "nobody"
         return f"{answer.kind} for f = {answer.f}: {liars} malicious"
     if callable(getattr(answer, "summary", None)):
         return str(answer.summary()).splitlines()[0]

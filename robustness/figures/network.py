@@ -17,7 +17,7 @@ from robustness.figures.marking import Marks, marks_of
 from robustness.figures.naming import are_short, write_names
 from robustness.figures.placement import Positions, moved_apart, positions_for, positions_in, scale_of
 from robustness.figures.saving import new_figure, save_figure
-from robustness.figures.wording import name_on_picture, plain
+from robustness.figures.wording import Names, plain
 from robustness.showing import Shown
 from robustness.spelled import counted
 from robustness.time_varying import TimeVaryingGraph
@@ -182,7 +182,8 @@ def _draw_on(axes: Axes, graph: Digraph, marks: Marks, places: Positions, scale:
     picture = nx.DiGraph()
     picture.add_nodes_from(range(graph.n))
     picture.add_edges_from(graph.arcs())
-    named = [name_on_picture(label) for label in graph.labels]
+    names_of = Names(graph.labels)
+    named = [names_of.short(label) for label in graph.labels]
     size = _node_size(places, scale, 25.0 if are_short(named) else 17.0)
     places = moved_apart(places, scale, 1.2 * size**0.5)
     groups = [(name, group) for name, group in _groups(graph, marks) if group]

@@ -12,7 +12,7 @@ import numpy as np
 from robustness.errors import InvalidParameter
 from robustness.figures.saving import new_figure, save_figure
 from robustness.figures.time_span import last_step_shown
-from robustness.figures.wording import nodes_in_words, plain
+from robustness.figures.wording import Names, plain
 from robustness.simulation.adversaries import Alternating
 from robustness.simulation.dynamics import Floats, to_absolute
 from robustness.simulation.outcome import Outcome, Trajectory
@@ -169,6 +169,7 @@ def _draw_quantity(panel: Axes, quantity: str, run: Run, last_step: int | None) 
     times = steps * scenario.T
     values = _values(quantity, scenario, recorded(run), steps)
     normal = [i for i, label in enumerate(labels) if label not in start.malicious]
+    named = Names(labels)
     values_in_words = _told_apart([value for value, _ in outcome.groups])
     for number, (_, group) in enumerate(outcome.groups):
         color = GROUP_COLORS[number % len(GROUP_COLORS)]
@@ -177,7 +178,7 @@ def _draw_quantity(panel: Axes, quantity: str, run: Run, last_step: int | None) 
             dashes = _DASHES[place % len(_DASHES)]
             panel.plot(times, values[:, i], ls=dashes, lw=1.4, color=color, label="_")
         if number < _NAMED:
-            told = f"{nodes_in_words(group, 5)} at {values_in_words[number]}"
+            told = f"{named.together(group, 5)} at {values_in_words[number]}"
             panel.plot([], [], color=color, lw=2, label=_wrapped(told))
     if len(outcome.groups) > _NAMED:
         panel.plot([], [], lw=0, label=f"… {len(outcome.groups) - _NAMED} more")
@@ -247,12 +248,13 @@ def _draw_claims(panel: Axes, quantity: str, run: Run, steps: Any) -> None:
 def _faces(scenario: Scenario, liars: Sequence[object], sent: Floats) -> Iterator[tuple[int, str]]:
     """Yield the lines that show what liars say: of all steps (-1), or of even (0) and odd ones (1)."""
     one = len(liars) == 1
-    name = plain(liars[0]) if one else nodes_in_words(liars, 4)
+    named = Names(scenario.network.union.labels)
+    name = named(liars[0]) if one else named.together(liars, 4)
     say, show = ("says", "shows") if one else ("say", "show")
     adversary = scenario.adversary
     if isinstance(adversary, Alternating) and adversary.sees_even and adversary.sees_odd:
-        yield 0, f"{name} {show} {nodes_in_words(adversary.sees_even, 4)}"
-        yield 1, f"{name} {show} {nodes_in_words(adversary.sees_odd, 4)}"
+        yield 0, f"{name} {show} {named.together(adversary.sees_even, 4)}"
+        yield 1, f"{name} {show} {named.together(adversary.sees_odd, 4)}"
         return
     jumps = np.abs(np.diff(sent))
     if len(jumps) >= 4 and np.median(jumps) > 0.2 * (np.ptp(sent) or 1.0):

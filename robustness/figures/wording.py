@@ -1,13 +1,14 @@
-"""Node labels in pictures: short, in natural order, and never read as formulas."""
+"""Node labels in pictures: short, in natural order, told apart, and never read as formulas."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 
 from robustness.natural_order import in_natural_order
 from robustness.spelled import listed_in_words
 
-__all__ = ["name_on_picture", "nodes_in_words", "plain"]
+__all__ = ["Names", "plain"]
 
 #: Letters of a node's name on a picture; longer ones run over the whole of it.
 _LONGEST_NAME = 32
@@ -23,20 +24,52 @@ def plain(text: object) -> str:
     return shown.replace("$", r"\$")
 
 
-def name_on_picture(label: object) -> str:
-    """Return a node's name, cut where it would cover other nodes; the answers themselves have it whole.
+class Names:
+    """How the nodes of one network are named on its pictures: in quotes only where two of them would look alike.
 
-    >>> name_on_picture("n10"), name_on_picture("a" * 99)
-    ('n10', 'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa…')
+    >>> named = Names([1, "1", "n10", "n2"])
+    >>> named(1), named("1"), named("n2"), named.together(["n10", "n2", "1"])
+    ('1', "'1'", 'n2', "{'1', n2, n10}")
     """
-    text = str(label)
-    return plain(text if len(text) <= _LONGEST_NAME else text[: _LONGEST_NAME - 1] + "…")
+
+    def __init__(self, labels: Iterable[object]) -> None:
+        nodes = labels if isinstance(labels, tuple) else tuple(labels)
+        self._alike = _repeated(map(str, nodes))
+        self._alike_when_cut = _repeated(map(_cut, {self._text(label) for label in nodes}))
+
+    def __call__(self, label: object) -> str:
+        """Return a node's whole name."""
+        return plain(self._text(label))
+
+    def short(self, label: object) -> str:
+        """Return a node's name, cut where it would cover other nodes; the answers themselves have it whole.
+
+        >>> Names(["a" * 99]).short("a" * 99), Names(["a" * 40 + "1", "a" * 40 + "2"]).short("a" * 40 + "2")
+        ('aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa…', 'aaaaaaaaaaaaaaa…aaaaaaaaaaaaaaa2')
+        """
+        text = self._text(label)
+        cut = _cut(text)
+        if cut != text and cut in self._alike_when_cut:
+            half = (_LONGEST_NAME - 1) // 2
+            cut = f"{text[:half]}…{text[-half - 1 :]}"
+        return plain(cut)
+
+    def together(self, labels: Iterable[object], most: int = 8) -> str:
+        """Return a node set as text, at most so many labels of it, in natural order.
+
+        >>> Names(range(20)).together(range(20), 3)
+        '{0, 1, 2, … 17 more}'
+        """
+        return listed_in_words(in_natural_order(labels), most, self)
+
+    def _text(self, label: object) -> str:
+        text = str(label)
+        return repr(label) if text in self._alike else text
 
 
-def nodes_in_words(labels: Iterable[object], most: int = 8) -> str:
-    """Return a node set as text, at most so many labels of it, in natural order.
+def _cut(text: str) -> str:
+    return text if len(text) <= _LONGEST_NAME else text[: _LONGEST_NAME - 1] + "…"
 
-    >>> nodes_in_words(["n10", "n2"]), nodes_in_words(range(20), 3)
-    ('{n2, n10}', '{0, 1, 2, … 17 more}')
-    """
-    return listed_in_words(in_natural_order(labels), most, plain)
+
+def _repeated(texts: Iterable[str]) -> frozenset[str]:
+    return frozenset(text for text, count in Counter(texts).items() if count > 1)

@@ -33,7 +33,9 @@ def decode(data: bytes, options: ReadingOptions) -> Digraph:
     if isinstance(document, dict) and document.get("format") == CANONICAL_FORMAT:
         return _canonical(data, options)
     if isinstance(document, dict) and isinstance(document.get("steps"), list):
-        raise UnreadableTopology("is a network over time, as it has 'steps': 'joint' and 'tolerance --tau' read it")
+        raise UnreadableTopology(
+            "is a network over time, as it has 'steps': joint, tolerance --tau and simulate --over-time read it"
+        )
     found = found_in(document)
     if found is None and not isinstance(document, dict):
         raise UnreadableTopology(f"node-link JSON is an object with 'nodes' and 'edges', not {kind_of(document)}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import stat
@@ -61,16 +62,22 @@ def replace_file(path: str | os.PathLike[str], data: bytes | Iterable[bytes]) ->
 
 
 def require_different_files(
-    inputs: Iterable[str | os.PathLike[str] | None], outputs: Iterable[str | os.PathLike[str] | None]
+    inputs: Iterable[str | os.PathLike[str] | None],
+    outputs: Iterable[str | os.PathLike[str] | None],
+    *,
+    makes_folders: bool = False,
 ) -> None:
     """Guarantees that no output is an input or another output, before any work is done; None names no file.
 
-    An input ``FILE#3``, one graph of many in a file, is that file.
+    An input ``FILE#3``, one graph of many in a file, is that file. Where an output is to go there is a folder that can
+    be written into, or with ``makes_folders`` one can be made.
 
     Raises
     ------
     InvalidParameter
         When two of them are one file, by whatever names. Devices and pipes may be named twice.
+    OSError
+        Naming the output, when there is no such folder: work that takes long would be lost.
     """
     seen: dict[str, str] = {}
     for path in inputs:
@@ -83,6 +90,17 @@ def require_different_files(
         if real in seen and not _is_special(Path(real)):
             raise InvalidParameter(f"the output {os.fspath(path)} is the same file as {seen[real]}: name another file")
         seen[real] = f"the output {os.fspath(path)}"
+        if not _is_special(Path(real)):
+            _require_folder(path, os.path.dirname(real), makes_folders=makes_folders)
+
+
+def _require_folder(path: str | os.PathLike[str], folder: str, *, makes_folders: bool) -> None:
+    while makes_folders and not os.path.lexists(folder):
+        folder = os.path.dirname(folder)
+    missing = errno.ENOENT if not os.path.lexists(folder) else errno.ENOTDIR if not os.path.isdir(folder) else 0
+    problem = missing or (0 if os.access(folder, os.W_OK | os.X_OK) else errno.EACCES)
+    if problem:
+        raise OSError(problem, os.strerror(problem), os.fspath(path))
 
 
 def _whole(source: str) -> str:

@@ -17,6 +17,7 @@ from robustness.errors import InvalidParameter
 from robustness.gain_region import gain_gap, hull_velocity_factor
 from robustness.simulation.dynamics import Floats
 from robustness.simulation.update_rules import Rule
+from robustness.spelled import Spelling
 
 __all__ = ["Fleet", "PromiseWarning", "arc_weights", "fleet_of", "kept_weight_bound", "node_gains"]
 
@@ -77,12 +78,15 @@ def fleet_of(
     if rule.update is not None:
         gaps = ["no theorem is about an update rule of one's own: nothing is promised about this run"] * graph.n
     elif not rule.first_order:
+        named = Spelling(graph.labels)
         for i, sigma in enumerate(kept_weight_bound(graph, weight, f).tolist()):
             gap = gain_gap(T, float(gains[i]), sigma)
             if gap is None:
                 coasting[i] = hull_velocity_factor(T, float(gains[i]), sigma)
             else:
-                gaps[i] = f"outside the gains of the theory at node {graph.labels[i]!r}, nothing is promised: {gap}"
+                gaps[i] = (
+                    f"outside the gains of the theory at node {named(graph.labels[i])}, nothing is promised: {gap}"
+                )
     return Fleet(rule, T, gains, weight, tuple(gaps), coasting)
 
 

@@ -21,6 +21,7 @@ from robustness.simulation.outcome import (
 )
 from robustness.simulation.scenario import Scenario, Start
 from robustness.simulation.update_rules import Rule
+from robustness.spelled import Spelling
 
 __all__ = ["PlainRecord"]
 
@@ -142,8 +143,10 @@ class PlainRecord:
         if self.rule.first_order:
             return None
         gap = gain_gap(self.scenario.T, self.gains[i], self._sigma(i))
-        where = f"outside the gains of the theory at node {self.union.labels[i]!r}, nothing is promised: "
-        return None if gap is None else where + gap
+        if gap is None:
+            return None
+        node = Spelling(self.union.labels)(self.union.labels[i])
+        return f"outside the gains of the theory at node {node}, nothing is promised: {gap}"
 
     def _safe(self, b: int, places: list[list[float]]) -> bool:
         """Return whether every normal position stayed in the hull of all p and p + c q of the start."""

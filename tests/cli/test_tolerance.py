@@ -347,4 +347,4 @@ def test_what_holds_only_over_time_is_said_to_have_no_certificate(tmp_path: Path
 def test_a_command_about_one_network_names_those_about_many_steps() -> None:
     sequence = str(Path(__file__).parents[2] / "examples" / "round-robin.json")
     outcome = CliRunner().invoke(robustness, ["attack", sequence])
-    assert (outcome.exit_code, "'joint' and 'tolerance --tau' read it" in outcome.stderr) == (3, True)
+    assert (outcome.exit_code, "joint, tolerance --tau and simulate --over-time read it" in outcome.stderr) == (3, True)

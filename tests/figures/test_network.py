@@ -458,3 +458,23 @@ def test_a_flat_layout_fills_its_picture(network: nx.Graph) -> None:
     heights = drawn.transData.transform(np.vstack([c.get_offsets() for c in drawn.collections]))[:, 1]
     assert np.ptp(heights) > 0.4 * drawn.figure.bbox.height
     plt.close(drawn.figure)
+
+
+ALIKE = nx.Graph([(1, "1"), ("1", 2), (2, "2"), (1, 2), ("2", 1), ("b" * 40 + "1", 1), ("b" * 40 + "2", 1)])
+
+
+def test_no_two_nodes_of_a_picture_look_alike() -> None:
+    drawn = rb.draw(ALIKE, ax=axes())
+    names = [text.get_text() for text in drawn.texts]
+    assert len(set(names)) == len(ALIKE)
+    assert {"1", "'1'", "2", "'2'"} < set(names)
+    attack = find_attack(nx.Graph([(1, "1"), ("1", 2)]), 1).attack
+    assert attack is not None
+    assert rb.draw(attack.graph, attack, ax=axes()).get_title().count("'1'") == ("1" in attack.malicious)
+    run = rb.simulate(ALIKE, f=1, malicious=["1"], steps=6, seed=1).plot()
+    told = " ".join(
+        text.get_text()
+        for ax in np.atleast_1d(run)
+        for text in (ax.get_legend().get_texts() if ax.get_legend() else [])
+    )
+    assert "'1'" in told

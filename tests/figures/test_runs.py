@@ -337,3 +337,10 @@ class TestFilms:
         assert film.stat().st_size > 1000
         arguments = ["simulate", "--experiment", "gap", "--animate", str(film)]
         assert CliRunner().invoke(robustness, arguments).exit_code == 2
+
+
+@pytest.mark.parametrize("nodes", [0, 1])
+def test_films_of_next_to_nothing(nodes: int, tmp_path: Path) -> None:
+    film = tmp_path / "film.html"
+    animate(run_of(rb.simulate(nx.empty_graph(nodes), f=0, steps=3)), film)
+    assert "<img" in film.read_text(encoding="utf-8")
