@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from itertools import combinations
 
 import networkx as nx
@@ -322,3 +324,25 @@ class TestMisuse:
         find(malicious_sets(G, 2, model="local"), lambda M: True)
         assert list(combinations(G, 2))
         assert nx.utils.graphs_equal(G, nx.path_graph(5))
+
+
+def test_no_draw_waits_for_an_import() -> None:
+    """A draw that does is slow where Hypothesis looks, and fails its health check on a busy machine."""
+    program = """
+import sys
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from robustness import testing
+
+@settings(max_examples=20, database=None, deadline=None, suppress_health_check=list(HealthCheck))
+@given(st.tuples(testing.graphs(), testing.digraphs(), testing.rs_robust_graphs(2, 2), testing.not_r_robust_graphs(2),
+                 testing.time_varying_graphs()))
+def draws(drawn):
+    new = {name.partition(".")[0] for name in set(sys.modules) - before}
+    assert not new & {"robustness", "networkx", "scipy", "ortools"}, new
+
+before = set(sys.modules)
+draws()
+"""
+    drawn = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert drawn.returncode == 0, drawn.stderr

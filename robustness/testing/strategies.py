@@ -8,11 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Mapping
 from itertools import combinations, permutations
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
+
+# Here and not where they are used: hypothesis takes a first draw that waits for an import for a slow strategy.
+import networkx as nx
 
 from robustness.decision.bounds.degree import sufficient_degree
 from robustness.digraph import GraphLike, as_digraph
 from robustness.errors import InvalidParameter, MissingExtra
+from robustness.pasteable import PasteableDiGraph, PasteableGraph
 from robustness.results import Witness
 from robustness.spelled import counted
 
@@ -20,9 +24,6 @@ try:
     from hypothesis import strategies as st
 except ImportError as missing:  # pragma: no cover - the tests of this module need it
     raise MissingExtra("robustness.testing needs hypothesis: pip install graph-robustness[testing]") from missing
-
-if TYPE_CHECKING:
-    import networkx as nx
 
 __all__ = [
     "digraphs",
@@ -222,8 +223,6 @@ _FATES = ("gone", "merged", "there", "there", "there", "there")
 
 def _merge(graph: nx.Graph, node: int, lost: Mapping[int, str]) -> None:
     """Give the links of ``node`` to the first of its neighbours that stays or is merged later, if there is one."""
-    import networkx as nx
-
     neighbours = sorted(nx.all_neighbors(graph, node))
     heir = next((each for each in neighbours if each not in lost or (each > node and lost[each] == "merged")), None)
     if heir is not None:
@@ -271,8 +270,6 @@ def _seed(draw: Draw, n: int, r: int, directed: bool) -> nx.Graph:
     Such a graph is (r,s)-robust for every s: of two disjoint sets one has at most ``floor(n/2)`` nodes, and each
     of its nodes hears at most ``floor(n/2) - 1`` nodes inside, so at least r outside. n - 1 in-neighbours do as well.
     """
-    import networkx as nx
-
     graph: nx.Graph = nx.complete_graph(n, create_using=nx.DiGraph if directed else nx.Graph)
     spare = [max(n - 1 - sufficient_degree(n, r), 0) if r else n - 1] * n
     if not any(spare):
@@ -308,8 +305,6 @@ def _not_robust_graphs(draw: Draw, r: int, min_nodes: int, max_nodes: int, direc
 
 
 def _empty(n: int, directed: bool) -> nx.Graph:
-    from robustness.pasteable import PasteableDiGraph, PasteableGraph
-
     graph: nx.Graph = PasteableDiGraph() if directed else PasteableGraph()
     graph.add_nodes_from(range(n))
     return graph
