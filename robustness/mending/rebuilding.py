@@ -38,6 +38,7 @@ from certificates.stream import Stream
 from certificates.strict_json import parse
 from robustness.digraph import Digraph
 from robustness.limits import Limits
+from robustness.spelled import counted
 from robustness.waiting import in_a_thread
 
 __all__ = ["Confirmation", "LeastVerdict", "confirm_least", "subject_of"]
@@ -83,7 +84,8 @@ class Confirmation:
         if self.verdict is LeastVerdict.CONFIRMED:
             return f"HiGHS confirms that {what}"
         if self.verdict is LeastVerdict.REFUTED:
-            return f"HiGHS finds {len(self.cheaper)} links that break them all and cost less than the certificate says"
+            found = counted(len(self.cheaper), "link")
+            return f"HiGHS breaks them all with {found} that cost less than the certificate says"
         return f"undecided whether {what}: neither the kernel's tree over choices nor HiGHS decided within the limits"
 
 
