@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ import pytest
 from benchmarks.__main__ import main
 from benchmarks.comparing import Comparison, Crew, Settings, Solved, compare, contradiction, geometric_mean
 from benchmarks.figures import HEAD
+from benchmarks.frontier import INSTANCES, Outcome, read_record, row
 from benchmarks.measuring import METHODS, Determination, Measured, ask, determine
 from benchmarks.suite import BUILDERS, FAMILIES, Instance, build, instances
 from benchmarks.tables import Target, line, means, suite_targets, summary, summary_table, table
@@ -275,3 +277,22 @@ class TestTables:
         figure = Target("name", "< 2 s", "1 s", True, 1.0, 0.9)
         assert len(figure.row()) == len(HEAD)
         assert "yes" in table([HEAD, figure.row()])
+
+
+def test_the_frontier_of_the_documents_is_that_of_its_record() -> None:
+    record = read_record(ROOT / "docs" / "frontier.jsonl")
+    rows = [row(name, [each for (of, _), each in record.items() if of == name], 1800.0) for name in INSTANCES]
+    assert all(len([key for key in record if key[0] == name]) == 10 for name in INSTANCES)
+    table = (ROOT / "docs" / "cluster.md").read_text(encoding="utf-8")
+    assert "\n".join(rows) in table
+    shown = (ROOT / "README.md").read_text(encoding="utf-8").partition("## How large")[2].partition("\n## ")[0]
+    told = [each for each in shown.splitlines() if each.startswith("| ") and " of 10 |" in each]
+    assert len(told) > 5
+    assert set(told) <= {"|".join(each.split("|")[:5]) + "|" for each in rows}
+
+
+def test_a_seed_whose_limit_came_early_is_run_again() -> None:
+    """On a busy machine a limit of wall-clock time comes before so much work of one core."""
+    early = Outcome("G(70,.5)", 1, 16, 18, 900.0, 900.0, 1, (500.0, 800.0, 1500.0))
+    assert "1 not run to the limit" in row("G(70,.5)", [early], 1800.0)
+    assert "not run" not in row("G(70,.5)", [replace(early, seconds=1790.0, limit=1800.0)], 1800.0)
