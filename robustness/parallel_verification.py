@@ -37,8 +37,11 @@ _FORMAT = "robustness/cubes-index/1"
 #: A body of fewer bytes is verified in a second or two; the others are cut into trees of one part in so many at most.
 _WORTH_IT, _PARTS = 2**17, 16
 
-#: Seconds between two looks at how far the processes are; bytes that they are told at a time.
-_LOOK, _BLOCK = 0.2, 2**16
+#: Seconds between two looks at how far the processes are.
+_LOOK = 0.2
+
+#: Bytes that a process is told at a time.
+_BLOCK = 2**16
 
 Cubes = tuple[tuple[int, int], ...]
 

@@ -175,6 +175,7 @@ def test_no_file_has_a_number_of_seconds_that_decides() -> None:
         "_GRACE",
         "_ESTIMATE_SECONDS",
         "_FETCH",
+        "_LOOK",
         "_STALE",
         "_FIRST_SLICE, _LONGEST_SLICE",
         "_PATIENCE, _GRACE",
