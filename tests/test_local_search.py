@@ -163,3 +163,10 @@ def test_large_sparse_graphs_take_linear_memory_and_little_time() -> None:
     assert pair is not None
     assert "in_words" not in vars(graph)
     assert "in_masks" not in vars(graph)
+
+
+def test_pairs_that_are_rare_are_found() -> None:
+    """Of 2^160 halves some hundreds are violating pairs; a counted budget of half a second finds one of each graph."""
+    for seed in (101, 107, 108):
+        graph = digraph(nx.random_regular_graph(10, 160, seed=seed))
+        assert find_violation(graph, 5, steps=Steps(500_000_000), restarts=10**6) is not None
