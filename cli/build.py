@@ -16,6 +16,7 @@ from .exit_codes import ExitCode
 from .options import json_option, talk_options
 from .output import Console, graph_document, pass_console, set_text
 from .query import speaking
+from .suggesting import SuggestingGroup
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -28,7 +29,7 @@ SCHEMA = "robustness/build/1"
 LIST_SCHEMA = "robustness/build-list/1"
 
 
-class FamilyGroup(click.Group):
+class FamilyGroup(SuggestingGroup):
     """One subcommand per family, its options made from the family's parameters."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from robustness.spelled import counted
+from robustness.spelled import counted, robust
 
 from .exit_codes import ExitCode
 from .interruption import Overrun
@@ -257,7 +257,7 @@ def _lines(report: Report, source: str, *, whole: bool) -> Iterator[str]:
 
 def _headline(report: Report) -> str:
     r, s = report.r, report.s
-    name = f"{r}-robust" if s == 1 else f"({r},{s})-robust"
+    name = robust(r, s)
     match report.verdict:
         case "robust":
             return f"{click.style('robust:', fg='green', bold=True)} the network is {name}"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from robustness.spelled import counted
+from robustness.spelled import counted, robust
 
 from .exit_codes import ExitCode
 from .interruption import Overrun
@@ -324,7 +324,7 @@ def _lines(report: Report, source: str, *, no_curve: str, whole: bool) -> Iterat
 
 
 def _headline(result: JointResult) -> str:
-    name = f"jointly {result.r}-robust" if result.s == 1 else f"jointly ({result.r},{result.s})-robust"
+    name = f"jointly {robust(result.r, result.s)}"
     why = f": {result.reason}" if result.reason else ""
     match result.verdict.value:
         case "robust":

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import importlib
 import importlib.util
 import os
@@ -17,6 +16,7 @@ from .exit_codes import ExitCode
 from .interruption import end_process
 from .options import talk_options
 from .output import Console, pass_console
+from .suggesting import SuggestingGroup
 
 __all__ = ["COMMANDS", "main", "robustness"]
 
@@ -43,7 +43,7 @@ COMMANDS: Mapping[str, str] = MappingProxyType(
 )
 
 
-class CommandTable(click.Group):
+class CommandTable(SuggestingGroup):
     """A group that looks commands up in :data:`COMMANDS` and ends every one of them in an :class:`ExitCode`."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
@@ -58,19 +58,6 @@ class CommandTable(click.Group):
         module, _, attribute = COMMANDS[cmd_name].partition(":")
         command: click.Command = getattr(importlib.import_module(module, __package__), attribute)
         return command
-
-    def resolve_command(
-        self, ctx: click.Context, args: list[str]
-    ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Find the command; the error about a mistyped name suggests what was probably meant."""
-        try:
-            return super().resolve_command(ctx, args)
-        except click.UsageError as problem:
-            close = difflib.get_close_matches(args[0], COMMANDS, cutoff=0.5)
-            if not close:
-                raise
-            meant = f"{problem.message.rstrip('.')}: did you mean {' or '.join(close)}?"
-            raise click.UsageError(meant, ctx) from None
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Remember whether the answer, and so an error as well, is to be JSON."""
@@ -91,7 +78,7 @@ class CommandTable(click.Group):
             except click.UsageError as problem:
                 from robustness.printable import printable
 
-                message = printable(problem.format_message(), "\n")
+                message = _in_words(printable(problem.format_message(), "\n"))
                 console.error_document(problem.exit_code, message)
                 raise click.UsageError(message, problem.ctx) from None
             except click.ClickException as problem:
@@ -101,6 +88,18 @@ class CommandTable(click.Group):
                 raise
             except (Exception, KeyboardInterrupt) as problem:  # noqa: BLE001 - the one place that maps them all
                 ctx.exit(_report(console, problem))
+
+
+#: What click says of a value that is no number, and what people say.
+_KINDS_OF_NUMBERS = {"valid integer range": "whole number", "valid integer": "whole number"} | {
+    "valid float range": "number", "valid float": "number",
+}  # fmt: skip
+
+
+def _in_words(message: str) -> str:
+    for kind, word in _KINDS_OF_NUMBERS.items():
+        message = message.replace(f" is not a {kind}.", f" is not a {word}.")
+    return message
 
 
 def _report(console: Console, problem: BaseException) -> ExitCode:

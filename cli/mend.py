@@ -37,7 +37,7 @@ SCHEMA = "robustness/mend/1"
     help="What a link costs: one, its length, or this attribute (column) of it in the file of --candidates.",
 )
 @click.option("--forbid", type=FILE, metavar="FILE", help="A network whose links may not be added.")
-@click.option("--require", "required", type=FILE, metavar="FILE", help="A network whose links have to be added.")
+@click.option("--mandatory", type=FILE, metavar="FILE", help="A network whose links have to be added.")
 @click.option(
     "--max-in-degree",
     "caps",
@@ -60,7 +60,7 @@ def command(
     reach: float | None,
     cost: str,
     forbid: Path | None,
-    required: Path | None,
+    mandatory: Path | None,
     caps: str | None,
     budget: float | None,
     climbed: str | None,
@@ -82,11 +82,11 @@ def command(
         raise click.UsageError("give one of --candidates and --range.")
     if cost not in ("one", "distance") and candidates is None:
         raise click.UsageError(f"--cost {cost} is an attribute of the links in a file: give it with --candidates FILE.")
-    require_different_files([source, candidates, forbid, required], kept.paths)
+    require_different_files([source, candidates, forbid, mandatory], kept.paths)
     graph = load_graph(source)
     places = _positions(source, graph) if reach is not None or cost == "distance" else {}
     wanted = links_in(candidates, graph) if reach is None else links_within(places, reach)
-    forbidden, needed = links_in(forbid, graph) or [], links_in(required, graph) or []
+    forbidden, needed = links_in(forbid, graph) or [], links_in(mandatory, graph) or []
     price: Any = None
     if cost == "distance":
         price = _distances(places)
@@ -97,7 +97,7 @@ def command(
         "candidates": wanted,
         "cost": price,
         "forbid": forbidden,
-        "require": needed,
+        "mandatory": needed,
         "max_in_degree": None if caps is None else caps_in(caps, graph),
         "one_way": True if one_way else None,
     }

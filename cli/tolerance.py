@@ -340,10 +340,11 @@ def _in_one_line(table: ToleranceTable) -> str:
 def _gate(report: Report) -> str:
     verdict = report.verdict() or ""
     color = {"guaranteed": "green", "refuted": "red"}.get(verdict, "yellow")
-    models = ", ".join(report.models_at(verdict))
+    named = report.models_at(verdict)
+    models = "every threat model" if set(named) == set(THREAT_MODEL_NAMES) else ", ".join(named)
     what = {
         "guaranteed": "agreement is guaranteed",
-        "refuted": "an attack splits the network",
+        "refuted": "an attack splits the network" if report.required else "the network splits though nobody lies",
         "undecided": "it was interrupted first"
         if report.is_interrupted
         else "the time limit came first, so more time may tell",

@@ -22,6 +22,7 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
     "mathml",
+    "whole_words",
     "sphinx.ext.viewcode",
     "sphinx_gallery.gen_gallery",
 ]

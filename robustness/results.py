@@ -15,7 +15,7 @@ from robustness.errors import InternalError, Undecided
 from robustness.evidence import Evidence, Pair
 from robustness.natural_order import in_natural_order
 from robustness.showing import Shown
-from robustness.spelled import labels_in_words
+from robustness.spelled import labels_in_words, robust
 from robustness.told import Told
 
 __all__ = ["Bound", "Bounds", "RobustnessResult", "Verdict", "Witness"]
@@ -99,9 +99,9 @@ class Bounds(Told):
         """
         graph, r, s = question
         if answer.verdict is Verdict.ROBUST and r > self.lower.value:
-            return Bounds(Bound(r, reason or f"({r},{s})-robust"), self.upper)
+            return Bounds(Bound(r, reason or robust(r, s)), self.upper)
         if answer.verdict is Verdict.NOT_ROBUST and r + s - 2 < self.upper.value:
-            reason = reason or f"violating pair of ({r},{s})-robustness"
+            reason = reason or f"violating pair of {robust(r, s)}ness"
             witness = Witness.of(graph, answer.pair) if s == 1 and answer.pair is not None else None
             return Bounds(self.lower, Bound(r + s - 2, reason, witness))
         return self
@@ -237,7 +237,7 @@ class RobustnessResult(Shown):
         if self.verdict is Verdict.NOT_ROBUST:
             return False
         raise Undecided(
-            f"({self.r},{self.s})-robustness was not decided ({self.stats.get('reason', 'a limit was reached')}): "
+            f"{robust(self.r, self.s)}ness was not decided ({self.stats.get('reason', 'a limit was reached')}): "
             "raise the time limit or choose another algorithm",
             bounds=self.bounds,
         )
@@ -246,9 +246,9 @@ class RobustnessResult(Shown):
         """Return the verdict in one line of plain words."""
         match self.verdict:
             case Verdict.ROBUST:
-                return f"({self.r},{self.s})-robust"
+                return robust(self.r, self.s)
             case Verdict.NOT_ROBUST:
-                return f"not ({self.r},{self.s})-robust"
+                return f"not {robust(self.r, self.s)}"
             case Verdict.DETERMINED:
                 if self.s_bounds is None or self.s_is_exact:
                     return f"r* = {self.r}, s_max({self.r}) = {self.s}"

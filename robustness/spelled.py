@@ -8,7 +8,16 @@ from collections.abc import Callable, Iterable, Sequence
 
 from robustness.natural_order import in_natural_order
 
-__all__ = ["Spelling", "counted", "counted_links", "label_text", "labels_in_words", "listed_in_words", "plural"]
+__all__ = [
+    "Spelling",
+    "counted",
+    "counted_links",
+    "label_text",
+    "labels_in_words",
+    "listed_in_words",
+    "plural",
+    "robust",
+]
 
 #: Text that stands without quotes: nothing in it ends a list or a set, and nothing of it is lost at its ends.
 _PLAIN = re.compile(r"[^\s,;{}()\[\]'\"](?:[^,;{}\"]*[^\s,;{}'\"])?")
@@ -38,6 +47,15 @@ def counted_links(arcs: int, directed: bool) -> str:
 def plural(count: float, noun: str, many: str = "") -> str:
     """Return the form of a word that goes with a number: ``many``, or with an s, unless it is 1."""
     return noun if count == 1 else many or f"{noun}s"
+
+
+def robust(r: int, s: int = 1) -> str:
+    """Return what a network is that is (r,s)-robust.
+
+    >>> robust(2), robust(2, 2)
+    ('2-robust', '(2,2)-robust')
+    """
+    return f"{r}-robust" if s == 1 else f"({r},{s})-robust"
 
 
 def label_text(label: object) -> str:

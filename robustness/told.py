@@ -87,7 +87,7 @@ def small_picture(nodes: int, draw_on: Callable[[Any], Any]) -> str:
         return ""
     axes.set_title("")
     stream = io.BytesIO()
-    figure.savefig(stream, format="png", dpi=80)
+    drawing("lettering").drawn_with_letters(lambda: figure.savefig(stream, format="png", dpi=80))
     data = base64.b64encode(stream.getvalue()).decode("ascii")
     return f"<img alt='' src='data:image/png;base64,{data}'/>"
 

@@ -189,3 +189,18 @@ def test_whoever_reads_of_the_paper_learns_which() -> None:
     )
     assert title in " ".join(shown.stdout.split())
     assert title in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+
+
+def test_no_line_of_code_ends_within_an_option() -> None:
+    sys.path.insert(0, str(ROOT / "docs"))
+    try:
+        from whole_words import kept_whole  # type: ignore[import-not-found]
+    finally:
+        sys.path.pop(0)
+    page = "<p>a-b</p><pre class='x'><span>mend g.json --cost 1</span> &lt;di-yuan --state\n" + "y" * 40 + "-z</pre>"
+    changed = kept_whole(page)
+    whole = re.findall(r"<span class='whole'>(.*?)</span>", changed)
+    assert whole == ["--cost", "di-yuan", "--state"]
+    assert re.sub(r"<span class='whole'>(.*?)</span>", r"\1", changed) == page
+    assert '"whole_words"' in (ROOT / "docs" / "conf.py").read_text(encoding="utf-8")
+    assert ".whole { white-space: nowrap; }" in (ROOT / "docs" / "_static" / "wrapped.css").read_text(encoding="utf-8")

@@ -253,12 +253,21 @@ class TestPaths:
         with pytest.raises(UnreadableTopology, match=r"closed\.json: cannot be read: Permission denied"):
             read_topology(path)
 
-    @pytest.mark.parametrize("name", ["graph", "graph.pdf", "graph.gz", ""])
-    def test_an_unknown_suffix_names_the_known_ones(self, name: str) -> None:
+    @pytest.mark.parametrize("name", ["graph", "graph.pdf", "graph.gz"])
+    def test_an_unknown_suffix_names_the_known_ones(
+        self, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.chdir(tmp_path)
+        (tmp_path / name).touch()
         with pytest.raises(UnreadableTopology, match=r"one of \.json, .*\.d6"):
             read_topology(name)
         with pytest.raises(UnreadableTopology, match="suffix"):
             write_topology(nx.path_graph(2), name)
+
+    @pytest.mark.parametrize(("name", "told"), [("", "no name"), ("graph", "graph"), ("graph.pdf", "graph.pdf")])
+    def test_of_a_file_that_is_not_there_the_suffix_is_not_the_news(self, name: str, told: str) -> None:
+        with pytest.raises(FileNotFoundError, match=f"^{told}: cannot be read: No such file or directory$"):
+            read_topology(name)
 
     def test_endless_input_is_cut_off(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr("robustness.files.front.SIZE_LIMIT", 1000)

@@ -106,7 +106,7 @@ class TestWords:
     def test_all_pass(self) -> None:
         graphs = {"a": nx.complete_graph(7), "b": nx.complete_graph(8)}
         text = Tags(rb.report(graphs, gate=rb.Gate(r=3), models=["malicious"], pictures=False).html).text
-        assert "Both networks are (3,1)-robust." in text
+        assert "Both networks are 3-robust." in text
 
     def test_a_limit_and_a_file_that_cannot_be_read_are_said(self, tmp_path: Path) -> None:
         (tmp_path / "broken.json").write_text("{")
@@ -121,16 +121,16 @@ class TestWords:
             (
                 ["passed"],
                 ["delayed"],
-                "The network is (2,1)-robust and survives 1 malicious node under the threat model delayed.",
+                "The network is 2-robust and survives 1 malicious node under the threat model delayed.",
             ),
-            (["refuted"], [], "The network must be (2,1)-robust and survive 1 malicious node under "),
+            (["refuted"], [], "The network must be 2-robust and survive 1 malicious node under "),
             (
                 ["passed"] * 3,
                 ["delayed", "malicious"],
-                "All 3 networks are (2,1)-robust and survive 1 malicious node under the threat models "
+                "All 3 networks are 2-robust and survive 1 malicious node under the threat models "
                 "delayed and malicious.",
             ),
-            (["passed", "refuted"], [], "1 of 2 networks is (2,1)-robust and survives"),
+            (["passed", "refuted"], [], "1 of 2 networks is 2-robust and survives"),
             (["refuted", "error", "error"], [], "None of 3 networks are"),
             (["passed", "missing"], [], "; 1 was not reached: nothing is claimed about it."),
             (["missing", "missing"], [], "survive 1 malicious node under every threat model; 2 were not reached: "),
@@ -181,14 +181,14 @@ class TestMending:
         parts = made.html.split("<details class='network'")
         found = rb.mend(nx.path_graph(5), 2)
         links = f"{len(found.links)} more link{'s' * (len(found.links) != 1)}"
-        assert f"With {links} it is (2,1)-robust. Fewer do not suffice: this is proven." in parts[1]
+        assert f"With {links} it is 2-robust. Fewer do not suffice: this is proven." in parts[1]
         assert "What would mend it" not in parts[2]
 
     def test_without_a_gate_it_is_one_more_r(self) -> None:
         graphs = {"cycle": nx.cycle_graph(5), "small": nx.complete_graph(3)}
         made = rb.report(graphs, models=[], pictures=False)
         first, second = made.html.split("<details class='network'")[1:]
-        assert "it is (2,1)-robust" in first
+        assert "it is 2-robust" in first
         assert "No further links between these nodes" in second
 
     def test_none_on_request_and_bad_limits_are_refused(self) -> None:

@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -22,6 +23,8 @@ from cli import many_networks
 from cli.main import robustness
 from cli.output import Console
 from robustness.files import write_topology
+from robustness.reporting.page import _values
+from robustness.surveying import Survey
 from robustness.surveying.networks import expand
 from robustness.surveying.row import Row
 from robustness.surveying.state import Journal
@@ -371,7 +374,7 @@ def test_links_that_mend_are_told_where_asked() -> None:
 def test_the_verdict_in_words_follows_the_table(folder: Path, tmp_path: Path) -> None:
     for more in ([], ["-o", tmp_path / "rows.csv"]):
         assert (
-            "2 of 3 networks are (2,1)-robust; 1 fails, with a counterexample."
+            "2 of 3 networks are 2-robust; 1 fails, with a counterexample."
             in run(folder, "--no-models", "-r", 2, *more).stderr
         )
     assert run(folder, "--no-models", "-r", 2, "--json").stderr.count("\n") == 1  # what was passed over
@@ -421,3 +424,27 @@ def test_a_bug_in_mending_is_no_missing_proposal(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(mended, "mend", broken)
     with pytest.raises(rb.InternalError):
         rb.survey({"ring": nx.cycle_graph(6)}, models=[], mending=1.0)
+
+
+def test_no_table_for_people_tells_of_less_than_nobody() -> None:
+    apart = Row("apart", nodes=4, arcs=0, directed=False, r=0, r_at_most=0, s=4, s_at_most=4)
+    survived = {"promised": (-1, 0), "open": (-1, 3), "unknown": (-1, None), "some": (0, 1)}
+    row = replace(
+        apart,
+        guaranteed={name: low for name, (low, _) in survived.items()},
+        refuted={name: refuted for name, (_, refuted) in survived.items()},
+    )
+    assert cells([row], list(survived))[1][5:9] == ["none", "none..2", "?", "0"]
+    assert [_values(cell) for cell in ("none", "none..2", "?", "0")] == [
+        " data-value='-1'", " data-upper='2' data-value='-1'", " data-value=''", " data-value='0'",
+    ]  # fmt: skip
+    for name in ("table", "markdown"):
+        assert "-1" not in TABLES[name]([row], list(survived))
+
+
+@pytest.mark.parametrize(
+    ("gates", "shown"),
+    [(["", ""], "2 networks"), (["passed"], "1 network, passed"), (["", "refuted"], "2 networks, refuted")],
+)
+def test_nothing_has_passed_where_nothing_was_asked(gates: list[str], shown: str) -> None:
+    assert repr(Survey(tuple(Row(str(k), gate=gate) for k, gate in enumerate(gates)), ())) == f"<Survey: {shown}>"

@@ -67,7 +67,7 @@ def certify_derivation(
     >>> seed = nx.cycle_graph(6)
     >>> made = blow_up(guaranteed(seed), 3)
     >>> certify_derivation(made.guarantee, [seed]).summary()
-    '(3,1)-robust'
+    '3-robust'
     """
     started = time.monotonic()
     by_digest = {graph.sha256: graph for graph in map(as_digraph, seeds)}

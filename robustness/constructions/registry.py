@@ -173,8 +173,8 @@ _TABLE: dict[str, tuple[Callable[..., nx.Graph], Callable[..., KnownRobustness |
     "sparse-robust": (families.sparse_robust, _sparse_robust, "r* = r"),
     "growth": (random_families.growth, _grown, "r* = r"),
     "preferential-attachment": (random_families.preferential_attachment, _grown, "r* = r"),
-    "random-geometric": (random_families.random_geometric, _unknown, "compute it"),
-    "erdos-renyi": (random_families.erdos_renyi, _unknown, "compute it"),
+    "random-geometric": (random_families.random_geometric, _unknown, "r* has no formula"),
+    "erdos-renyi": (random_families.erdos_renyi, _unknown, "r* has no formula"),
     "two-f-robust": (counterexamples.two_f_robust_counterexample, _two_f_robust, "r* = 2f, with a trap"),
     "five-node-figure": (counterexamples.five_node_figure, _five_node_figure, "r* = 2, with a trap for f = 1"),
 }

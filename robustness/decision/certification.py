@@ -27,7 +27,7 @@ from robustness.evidence import Convention, DegreeRule, Evidence, Growth, Refuta
 from robustness.limits import Limits, Progress
 from robustness.parallel_verification import verify_listing, write_with_cubes
 from robustness.results import RobustnessResult
-from robustness.spelled import counted
+from robustness.spelled import counted, robust
 from robustness.transcripts import Transcript
 from robustness.whole_numbers import taking_numpy_integers
 
@@ -112,7 +112,7 @@ def certify_within(
     graph, r, s = question
     if r == 0 or (graph.n < 2 and r > largest_conceivable_r(graph.n)):
         raise InvalidParameter(
-            f"({r},{s})-robust on {counted(graph.n, 'node')} is settled by convention: nothing to certify"
+            f"{robust(r, s)} on {counted(graph.n, 'node')} is settled by convention: nothing to certify"
         )
     answer, proof = _proven(question, limits, shortest)
     result = RobustnessResult.of(question, answer)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from robustness.errors import InvalidParameter, MissingExtra
+from robustness.figures.lettering import drawn_with_letters
 from robustness.figures.saving import new_figure
 from robustness.figures.simulation import GROUP_COLORS, LIAR_COLOR, Run, position_in_words, recorded, run_title
 from robustness.figures.time_span import last_step_shown
@@ -89,7 +90,7 @@ def animate(run: Run, path: str | os.PathLike[str], *, last_step: int | None = N
     with tempfile.TemporaryDirectory() as folder:
         made = Path(folder) / f"film{suffix}"
         if suffix == ".gif":
-            film.save(made, writer=PillowWriter(fps=_RATE), dpi=80)
+            drawn_with_letters(lambda: film.save(made, writer=PillowWriter(fps=_RATE), dpi=80))
         else:
             made.write_text(_page(film, run), encoding="utf-8")
         replace_file(path, made.read_bytes())
@@ -113,7 +114,7 @@ def _page(film: Any, run: Run) -> str:
     from matplotlib import rc_context
 
     with rc_context({"animation.embed_limit": 60.0, "savefig.dpi": 80}):
-        player = film.to_jshtml(fps=_RATE, default_mode="once")
+        player: str = drawn_with_letters(lambda: film.to_jshtml(fps=_RATE, default_mode="once"))
     player = re.sub(r"<link\b[^>]*>", "", player)
     player = re.sub(r'<i class="fa fa-([a-z -]+)"></i>', lambda icon: _BUTTONS.get(icon[1], icon[1]), player)
     title = html.escape(run_title(run))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from robustness.figures.saving import new_figure, save_figure
 from robustness.figures.wording import plain
 from robustness.results import Verdict
-from robustness.spelled import counted
+from robustness.spelled import counted, robust
 from robustness.time_varying import JointResult, TimeVaryingGraph, Violation
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def draw_joint(
         The answer: the title.
     shown : JointResult, optional
         One about windows a step shorter. At the smallest length nothing fails; a small grey row shows where the length
-        below it does.
+        below it does. Where no length will do, one about the greatest length, which is drawn instead.
 
     Raises
     ------
@@ -60,7 +60,11 @@ def draw_joint(
     panels = figure.subplots(rows, 1, squeeze=False, height_ratios=[2, 1, 2][:rows])[:, 0]
     panels[1].sharex(panels[0])
     _draw_steps(panels[0], sequence, result.violation)
-    _draw_windows(panels[1], result, None if shown is result else shown)
+    # Where no length will do, the windows of the greatest one are the answer, not those below it.
+    if result.window_unions or shown is None:
+        _draw_windows(panels[1], result, None if shown is result else shown)
+    else:
+        _draw_windows(panels[1], shown, None)
     if curve is not None:
         _draw_curve(panels[2], curve, result)
     save_figure(figure, path)
@@ -125,10 +129,10 @@ def _draw_windows(axes: Axes, result: JointResult, shorter: JointResult | None) 
                 count = sum(width for _, width in bars)
                 axes.broken_barh(
                     bars, (0, 0.25), facecolors="#9a9a9a", edgecolors="#9a9a9a", linewidths=0.5,
-                    label=f"of {counted(shorter.examined, 'step')}: {count} {_WORDS[verdict]}",
+                    label=f"{_WORDS[verdict]}: {counted(count, 'window')} of {counted(shorter.examined, 'step')}",
                 )  # fmt: skip
     _legend(axes)
-    name = f"{result.r}-robust" if result.s == 1 else f"({result.r},{result.s})-robust"
+    name = robust(result.r, result.s)
     axes.set_xlabel(f"start of the window: is the union over {counted(result.examined, 'step')} {name}?")
 
 
@@ -155,7 +159,7 @@ def _draw_curve(axes: Axes, curve: Mapping[int, int | None], result: JointResult
     if result.tau is not None:
         axes.axhline(result.tau, color="black", lw=0.8, ls="--", label=f"delay bound {result.tau}")
         _legend(axes)
-    axes.set_ylim(bottom=0)
+    axes.set_ylim(0, 1.08 * max([1, result.tau or 0, *reached.values()]))
     axes.locator_params(integer=True)
     axes.set_xlabel("r" if result.s == 1 else f"r, with s = {result.s}")
     axes.set_ylabel("smallest window")

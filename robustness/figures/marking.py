@@ -6,7 +6,7 @@ links to add, can be drawn without this module importing its room.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -30,8 +30,10 @@ class Marks:
         From outside into a side: what the definition counts.
     silenced : frozenset of arcs
         From malicious nodes into a side: what it does not count.
-    added, dropped : frozenset of arcs
-        Links that a mended network gains or loses.
+    lost_nodes : frozenset of int
+        Nodes whose loss destroys a goal.
+    added, kept, dropped, lost : frozenset of arcs
+        Links that a mended network gains; that stay in a thinned one, and can go; whose loss destroys a goal.
     title : str
     """
 
@@ -40,8 +42,11 @@ class Marks:
     M: frozenset[int] = frozenset()
     counted: frozenset[tuple[int, int]] = frozenset()
     silenced: frozenset[tuple[int, int]] = frozenset()
+    lost_nodes: frozenset[int] = frozenset()
     added: frozenset[tuple[int, int]] = frozenset()
+    kept: frozenset[tuple[int, int]] = frozenset()
     dropped: frozenset[tuple[int, int]] = frozenset()
+    lost: frozenset[tuple[int, int]] = frozenset()
     title: str = ""
 
 
@@ -63,13 +68,13 @@ def marks_of(graph: Digraph, answer: Any) -> Marks:
     """
     title = _title(answer)
     for part in _parts(answer):
-        links = getattr(part, "links", None)
+        links = _links(graph, part, title)
         if links is not None:
-            return Marks(added=_arcs(graph, links), dropped=_arcs(graph, getattr(part, "dropped", ())), title=title)
+            return links
         sets = _sets(part)
         if sets is not None:
             return _with_arcs(graph, *sets, title)
-    if answer is None or hasattr(answer, "verdict") or hasattr(answer, "guaranteed") or hasattr(answer, "exists"):
+    if answer is None or any(hasattr(answer, name) for name in ("verdict", "guaranteed", "exists", "losses", "best")):
         return Marks(title=title)
     raise InvalidParameter(
         f"a picture marks a result, an attack, a pair (S1, S2) or a trap (M, S1, S2), not {type(answer).__name__}"
@@ -79,7 +84,7 @@ def marks_of(graph: Digraph, answer: Any) -> Marks:
 def _parts(answer: Any) -> Iterator[Any]:
     """Yield the answer and what it carries that may hold sets."""
     yield answer
-    for name in ("witness", "violation", "shorter_fails", "attack_sets", "sets"):
+    for name in ("best", "witness", "violation", "shorter_fails", "attack_sets", "sets"):
         part = getattr(answer, name, None)
         if part is not None:
             yield part
@@ -89,6 +94,20 @@ def _parts(answer: Any) -> Iterator[Any]:
     groups = getattr(getattr(answer, "scenario", None), "groups", None)
     if groups:
         yield {"M": getattr(getattr(answer, "start", None), "malicious", ()), "S1": groups[0], "S2": groups[1]}
+
+
+def _links(graph: Digraph, part: Any, title: str) -> Marks | None:
+    """Return what a part marks that has links to add, to keep, to spare or to lose; None when it has none."""
+    links, dropped = getattr(part, "links", ()), getattr(part, "dropped", ())
+    if getattr(part, "losses", None):
+        gone = graph.ids(part.nodes)
+        around = [(u, v) for u, v in graph.arcs() if u in gone or v in gone]
+        return Marks(lost_nodes=gone, lost=_arcs(graph, part) | frozenset(around), title=title)
+    if not (links or dropped):
+        return None
+    arcs = _arcs(graph, part)
+    kept, added = (arcs, frozenset()) if getattr(part, "thinned", False) else (frozenset(), arcs)
+    return Marks(added=added, kept=kept, dropped=_arcs(graph, part, "dropped"), title=title)
 
 
 def _sets(part: Any) -> tuple[Any, Any, Any] | None:
@@ -118,12 +137,13 @@ def _with_arcs(graph: Digraph, bad: Any, first: Any, second: Any, title: str) ->
     return Marks(S1, S2, M, frozenset(counted), frozenset(silenced), title=title)
 
 
-def _arcs(graph: Digraph, links: Iterable[tuple[Hashable, Hashable]]) -> frozenset[tuple[int, int]]:
+def _arcs(graph: Digraph, part: Any, name: str = "links") -> frozenset[tuple[int, int]]:
+    """Return the links of a part: both arcs of each in an undirected graph, unless they are single arcs."""
     found = set()
-    for u, v in links:
+    for u, v in getattr(part, name, ()):
         (i,), (j,) = graph.ids([u]), graph.ids([v])
         found.add((i, j))
-        if not graph.directed:
+        if not (graph.directed or getattr(part, "one_way", False)):
             found.add((j, i))
     return frozenset(found)
 

@@ -32,6 +32,7 @@ _STYLES: Mapping[str, tuple[str, str]] = {
     "S1": ("#56b4e9", "o"),
     "S2": ("#e69f00", "s"),
     "M": ("#d55e00", "D"),
+    "lost": ("#ffffff", "p"),
     "rest": ("#d9d9d9", "o"),
 }
 
@@ -45,6 +46,14 @@ _CROWD, _FEW = 300, 30
 _MANY_STRONG, _MANY_ARCS = 60, 1000
 
 _SILENCED, _ADDED, _PLAIN = "#d55e00", "#009e73", "#b8b8b8"
+
+#: Of links that a change of the network is about: the name in Marks, colour, width, style, and what the legend says.
+_CHANGED: tuple[tuple[str, str, float, Literal["-", "--"], str], ...] = (
+    ("kept", "#404040", 1.8, "-", "link that stays"),
+    ("added", _ADDED, 3.4, "-", "link added"),
+    ("dropped", _SILENCED, 1.4, "--", "link that can go"),
+    ("lost", _SILENCED, 1.8, "--", "link lost"),
+)
 
 
 def draw(
@@ -232,8 +241,9 @@ def _seen(size: float, graph: Digraph, group: Iterable[int] = ()) -> float:
 
 
 def _groups(graph: Digraph, marks: Marks) -> list[tuple[str, frozenset[int]]]:
-    rest = frozenset(range(graph.n)) - marks.S1 - marks.S2 - marks.M
-    return [("S1", marks.S1 - marks.M), ("S2", marks.S2 - marks.M), ("M", marks.M), ("rest", rest)]
+    rest = frozenset(range(graph.n)) - marks.S1 - marks.S2 - marks.M - marks.lost_nodes
+    sides = [("S1", marks.S1 - marks.M), ("S2", marks.S2 - marks.M)]
+    return [*sides, ("M", marks.M), ("lost", marks.lost_nodes), ("rest", rest)]
 
 
 def _draw_group(
@@ -280,15 +290,14 @@ def _draw_arcs(
         ([arc for arc in marks.silenced if arc[1] in marks.S1 | marks.S2], _SILENCED, 1.4, "dotted"),
         ([arc for arc in marks.counted if arc[1] in marks.S1], "#0072b2", thick, "solid"),
         ([arc for arc in marks.counted if arc[1] not in marks.S1], "#b36b00", thick, "solid"),
-        (_one_way(marks.added), _ADDED, 3.4, "solid"),
-        (_one_way(marks.dropped), _SILENCED, 1.4, "dashed"),
+        *((_one_way(getattr(marks, name)), color, wide, style) for name, color, wide, style, _ in _CHANGED),
     )
     # The corners of squares and diamonds stick out; heads end before them.
     cornered = marks.S2 | marks.M
     large = {node: _seen(size, graph, group) for _, group in _groups(graph, marks) for node in group}
     ends = [large[node] * (1.7 if node in cornered else 1.0) for node in picture]
     headed: list[tuple[int, int]] = []
-    links = {arc for group in (marks.added, marks.dropped) for arc in group if (arc[1], arc[0]) in group}
+    links = {arc for group in _changed(marks) for arc in group if (arc[1], arc[0]) in group}
     for arcs, color, thick, style in shapes:
         if arcs:
             shape = picture.copy()
@@ -302,7 +311,11 @@ def _draw_arcs(
 
 
 def _strong(marks: Marks) -> frozenset[tuple[int, int]]:
-    return frozenset(marks.counted | marks.silenced | marks.added | marks.dropped)
+    return frozenset(marks.counted | marks.silenced).union(*_changed(marks))
+
+
+def _changed(marks: Marks) -> list[frozenset[tuple[int, int]]]:
+    return [getattr(marks, name) for name, *_ in _CHANGED]
 
 
 def _faint_one_way(picture: nx.DiGraph, marks: Marks) -> list[tuple[int, int]]:
@@ -325,8 +338,7 @@ def _arc_handles(marks: Marks) -> list[Any]:
         ([arc for arc in marks.counted if arc[1] in marks.S1], "#0072b2", "-", "into S1 from outside"),
         ([arc for arc in marks.counted if arc[1] not in marks.S1], "#b36b00", "-", "into S2 from outside"),
         (marks.silenced, _SILENCED, ":", "from M: shows each side its own value"),
-        (marks.added, _ADDED, "-", "link added"),
-        (marks.dropped, _SILENCED, "--", "link dropped"),
+        *((getattr(marks, name), color, style, told) for name, color, _, style, told in _CHANGED),
     )
     return [Line2D([], [], color=color, ls=style, lw=2, label=text) for arcs, color, style, text in rows if arcs]
 

@@ -7,6 +7,7 @@ import os
 from typing import TYPE_CHECKING
 
 from robustness.errors import InvalidParameter, MissingExtra
+from robustness.figures.lettering import drawn_with_letters, missing_letters
 from robustness.files import replace_file
 
 if TYPE_CHECKING:
@@ -40,12 +41,30 @@ def picture_format(path: str | os.PathLike[str]) -> str:
 
 
 def save_figure(figure: Figure, path: str | os.PathLike[str]) -> None:
-    """Write a figure to a file, without a date and with fixed ids."""
-    from matplotlib import rc_context
+    """Write a figure to a file, without a date and with fixed ids.
 
+    Letters that no font here has are told once; in SVG they stay text, for the fonts of whoever looks at it.
+    """
     kind = picture_format(path)
-    undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
-    with rc_context({"svg.hashsalt": "robustness"}):
-        stream = io.BytesIO()
+
+    def draw() -> bytes:
+        return _bytes_of(figure, kind)
+
+    if kind not in ("svg", "svgz"):
+        replace_file(path, drawn_with_letters(draw))
+        return
+    data, lacking = missing_letters(draw)
+    if lacking:
+        data, _ = missing_letters(lambda: _bytes_of(figure, kind, as_text=True))
+    replace_file(path, data)
+
+
+def _bytes_of(figure: Figure, kind: str, *, as_text: bool = False) -> bytes:
+    from matplotlib import rc_context, rcParams
+
+    undated = {"svg": {"Date": None}, "svgz": {"Date": None}, "pdf": {"CreationDate": None}}
+    letters = "none" if as_text else rcParams["svg.fonttype"]
+    stream = io.BytesIO()
+    with rc_context({"svg.hashsalt": "robustness", "svg.fonttype": letters}):
         figure.savefig(stream, format=kind, metadata=undated.get(kind), dpi=150)
-    replace_file(path, stream.getvalue())
+    return stream.getvalue()

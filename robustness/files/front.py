@@ -34,6 +34,8 @@ import sys
 import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
+from itertools import islice
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, BinaryIO
@@ -226,7 +228,7 @@ def read_with(source: str | os.PathLike[str], options: ReadingOptions, stdin: Bi
         return decode_topology(topohub_names.read(source), ".json", source, options=options)
     path, part = _path_and_part(source)
     if options.format is None:
-        _format_of(format_suffix(path), source)  # a wrong suffix is told before a wrong path: nothing has to be opened
+        _require_known_suffix(path, source)
     data = read_bytes(path)
     if part is not None:
         lines = graph6.lines_of(data)
@@ -236,6 +238,17 @@ def read_with(source: str | os.PathLike[str], options: ReadingOptions, stdin: Bi
             )
         data = lines[part - 1]
     return decode_topology(data, format_suffix(path), source, options=options)
+
+
+def _require_known_suffix(path: str, source: str) -> None:
+    """Refuse a file of another suffix before it is read, and a folder with a word about who reads one."""
+    if os.path.isdir(path):
+        raise UnreadableTopology(
+            f"{one_line(source)}: is a directory, not a file; joint, tolerance --tau and simulate --over-time read one "
+            "as a network over time, survey and report as many networks"
+        )
+    if os.path.exists(path):  # of what is not there, its suffix is not the news
+        _format_of(format_suffix(path), source)
 
 
 def names_of_graphs(source: str | os.PathLike[str]) -> list[str]:
@@ -273,13 +286,26 @@ def read_bytes(source: str, stdin: BinaryIO | None = None) -> bytes:
         with open(source, "rb") as stream:
             data = _read_limited(stream, source)
     except FileNotFoundError as problem:
-        raise MissingTopology(f"{one_line(source)}: cannot be read: {problem.strerror}") from None
+        raise MissingTopology(
+            f"{one_line(source) or 'no name'}: cannot be read: {problem.strerror}{_meant(source)}"
+        ) from None
     except (OSError, ValueError) as problem:
         if isinstance(problem, UnreadableTopology):
             raise
         reason = problem.strerror if isinstance(problem, OSError) and problem.strerror else str(problem)
         raise UnreadableTopology(f"{one_line(source)}: cannot be read: {one_line(reason)}") from None
     return _unpacked(data, source) if source.lower().endswith(".gz") else data
+
+
+def _meant(path: str) -> str:
+    """Return a question after the file beside ``path`` whose name is most like its own, or nothing."""
+    folder, name = os.path.split(path)
+    try:
+        beside = sorted(entry.name for entry in islice(os.scandir(folder or "."), 1000) if entry.is_file())
+    except OSError:
+        return ""
+    close = get_close_matches(name, beside, 1, 0.75)
+    return f": did you mean {one_line(os.path.join(folder, close[0]))}?" if close else ""
 
 
 def decode_topology(

@@ -30,6 +30,7 @@ from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter, Undecided
 from robustness.limits import UNBOUNDED, Limits
 from robustness.results import Verdict
+from robustness.spelled import robust
 from robustness.traps.smallest import smallest_trap
 
 __all__ = [
@@ -74,7 +75,7 @@ class RSRobust:
         return result.verdict is Verdict.ROBUST
 
     def __str__(self) -> str:
-        return f"{self.r}-robust" if self.s == 1 else f"({self.r},{self.s})-robust"
+        return robust(self.r, self.s)
 
 
 def RRobust(r: int) -> RSRobust:

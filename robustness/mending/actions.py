@@ -96,7 +96,7 @@ def actions_for(
     ends = dict.fromkeys([*every, *sorted(required)])
     if required & forbidden:
         u, v = sorted(required & forbidden)[0]
-        raise InvalidParameter(f"the link {_name(graph, (u, v))} is both required and forbidden")
+        raise InvalidParameter(f"the link {_name(graph, (u, v))} is both mandatory and forbidden")
     chosen: list[tuple[tuple[int, int], tuple[tuple[int, int], ...]]] = []
     for u, v in ends:
         arcs = tuple(arc for arc in (((u, v),) if one_way else ((u, v), (v, u))) if arc not in present)

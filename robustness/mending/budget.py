@@ -107,7 +107,8 @@ def best_within(
     on_improvement : callable, optional
         Called with what is known to be bought, as a result that is not exact, each time that is more.
     **constraints
-        ``candidates``, ``cost``, ``forbid``, ``require``, ``max_in_degree`` and ``one_way`` of :func:`robustness.mend`.
+        ``candidates``, ``cost``, ``forbid``, ``mandatory``, ``max_in_degree`` and ``one_way`` of
+        :func:`robustness.mend`.
 
     Returns
     -------

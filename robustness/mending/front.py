@@ -30,7 +30,7 @@ def mend(
     candidates: Iterable[Link] | None = None,
     cost: CostLike = None,
     forbid: Iterable[Link] = (),
-    require: Iterable[Link] = (),
+    mandatory: Iterable[Link] = (),
     max_in_degree: int | Mapping[Hashable, int] | None = None,
     one_way: bool | None = None,
     budget: float | None = None,
@@ -55,7 +55,7 @@ def mend(
         radio range.
     cost : mapping from links to numbers, or function of two nodes, optional
         What a link costs, at least 0; 1 unless given.
-    forbid, require : iterable of pairs of nodes
+    forbid, mandatory : iterable of pairs of nodes
         Links that may not, and that must, be added.
     max_in_degree : int, or mapping from nodes to int, optional
         How many nodes a node that gains links can hear at most; one that the mapping leaves out, as many as it likes.
@@ -108,7 +108,7 @@ def mend(
         candidates,
         cost,
         forbid=forbid,
-        require=require,
+        require=mandatory,
         max_in_degree=max_in_degree,
         one_way=arcs_only,
         budget=budget,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from robustness.errors import InvalidParameter
+from robustness.spelled import robust
 from robustness.threat_models.models import threat_model_named
 from robustness.traps.question import Question as TrapQuestion
 from robustness.whole_numbers import whole
@@ -54,7 +55,7 @@ class Goal:
     def __str__(self) -> str:
         wishes = []
         if self.r is not None:
-            wishes.append(f"({self.r},{self.s})-robust" if self.s > 1 else f"{self.r}-robust")
+            wishes.append(robust(self.r, self.s))
         if self.survive is not None:
             wishes.append(f"survives f = {self.survive} under {self.model}")
         return " and ".join(wishes)
@@ -74,7 +75,7 @@ class Part(NamedTuple):
 
     def __str__(self) -> str:
         if self.trap is None:
-            return f"({self.r},{self.s})-robust"
+            return robust(self.r, self.s)
         kind = "trap" if self.trap.two_faces else "violation"
         return f"no {'local ' if self.trap.local else ''}{kind} for f = {self.trap.f}"
 

@@ -66,7 +66,7 @@ def _key(head: Sequence[str], models: Sequence[str]) -> str:
     if models:
         told.append(
             "Under each threat model stands the largest f that is survived: 0 when agreement needs everybody to be "
-            "honest, -1 when that does not suffice, 0..2 when 0 is proven, 3 refuted, and the rest was not decided."
+            "honest, none when that does not suffice, 0..2 when 0 is proven, 3 refuted, and the rest was not decided."
         )
     if "links" in head:
         wish = "what is required of it" if "gate" in head else "one more r"
@@ -178,6 +178,7 @@ def _line(k: int, row: Row, line: Sequence[str], head: Sequence[str], section: S
 def _values(cell: str) -> str:
     """Return what a cell sorts by, and the upper end of an interval (empty where none is known) to filter by."""
     low, dots, high = {"?": ("", "", ""), "any": ("0", "", "")}.get(cell) or cell.lstrip(">=").partition("..")
+    low = "-1" if low == "none" else low  # less than 0, agreement while nobody lies
     is_open = dots or cell.startswith((">=", "any"))
     upper = f" data-upper='{escape(high, quote=True)}'" if is_open else ""
     return f"{upper} data-value='{escape(low, quote=True)}'"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from robustness.mending import Goal, MendResult, MendVerdict
 from robustness.reporting.wording import in_models
-from robustness.spelled import Spelling, counted
+from robustness.spelled import Spelling, counted, robust
 
 __all__ = ["in_sentences"]
 
@@ -34,7 +34,7 @@ def _at_least(count: float) -> str:
 
 
 def _wish(goals: tuple[Goal, ...]) -> str:
-    wishes = [f"is ({goal.r},{goal.s})-robust" for goal in goals if goal.r is not None]
+    wishes = [f"is {robust(goal.r, goal.s)}" for goal in goals if goal.r is not None]
     survived = [goal for goal in goals if goal.survive is not None]
     if survived:
         f = survived[0].survive

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from robustness.spelled import counted, counted_links, plural
+from robustness.spelled import counted, counted_links, plural, robust
 from robustness.surveying import Gate, Row, Survey
 from robustness.threat_models import THREAT_MODELS
 
@@ -56,7 +56,7 @@ def _wish(gate: Gate, models: Sequence[str], be: str) -> str:
     """Return what a gate asks, with the form of "to be" that tells the number: is, are, or be after an auxiliary."""
     wishes = []
     if gate.r is not None:
-        wishes.append(f"{be} ({gate.r},{gate.s})-robust")
+        wishes.append(f"{be} {robust(gate.r, gate.s)}")
     if gate.survive is not None:
         wishes.append(
             f"survive{'s' if be == 'is' else ''} {counted(gate.survive, 'malicious node')} under {in_models(models)}"

@@ -103,7 +103,8 @@ class Survey(Told):
         return tables.text(self.listed, self.models)
 
     def __repr__(self) -> str:
-        return f"<Survey: {counted(len(self.rows), 'network')}, {self.worst}>"
+        nothing_asked = self.worst == "passed" and not any(row.gate for row in self.rows)
+        return f"<Survey: {counted(len(self.rows), 'network')}{'' if nothing_asked else f', {self.worst}'}>"
 
     def _repr_html_(self) -> str:
         head, *body = tables.cells(self.listed, self.models)

@@ -40,8 +40,8 @@ def cells(rows: Sequence[Row], models: Sequence[str]) -> list[list[str]]:
     """Return the table that a person reads: a head, then a line for each row.
 
     An interval stands where a limit left one: ``2..4``. Under a model stands the largest f that is guaranteed, and
-    ``0..2`` when f = 3 is the smallest that is refuted and nothing is known in between; ``any`` of a single node. Under
-    "links" stands how many further links mend the network, where that was asked.
+    ``0..2`` when f = 3 is the smallest that is refuted and nothing is known in between; ``any`` of a single node,
+    ``none`` where not even f = 0 is. Under "links" stands how many further links mend it, where asked.
     """
     has_gate = any(row.gate for row in rows)
     has_links = any(row.links_at_least is not None for row in rows)
@@ -56,7 +56,7 @@ def _line(row: Row, models: Sequence[str], has_gate: bool, has_links: bool = Fal
     if row.error:
         return [row.network, *[""] * (4 + len(models)), *gate[:has_gate], *[""] * has_links, "", row.error]
     known = [_interval(row.r, row.r_at_most), _interval(row.s, row.s_at_most)]
-    promised = [_interval(row.guaranteed.get(each), _before(row.refuted.get(each))) for each in models]
+    promised = [_survived(row.guaranteed.get(each), _before(row.refuted.get(each))) for each in models]
     if row.nodes is not None and row.nodes < 2:  # nobody can disagree
         promised = ["any"] * len(models)
     note = "directed" if row.directed else ""
@@ -65,6 +65,15 @@ def _line(row: Row, models: Sequence[str], has_gate: bool, has_links: bool = Fal
 
 def _before(refuted: int | None) -> int | None:
     return None if refuted is None else refuted - 1
+
+
+def _survived(low: int | None, high: int | None) -> str:
+    """Return an interval of numbers of liars, which begins with ``none`` where agreement is not promised at all."""
+    if low is None or low >= 0:
+        return _interval(low, high)
+    if high is None:
+        return "?"
+    return "none" if high < 0 else f"none..{high}"
 
 
 def _interval(low: int | None, high: int | None) -> str:

@@ -10,7 +10,7 @@ from robustness.definitions import r_reachable_ids
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import Undecided
 from robustness.results import Verdict, Witness
-from robustness.spelled import counted
+from robustness.spelled import counted, robust
 
 __all__ = ["assert_not_robust", "assert_robust", "draw_violation"]
 
@@ -45,7 +45,7 @@ def assert_robust(G: GraphLike, r: int, s: int = 1, **options: Any) -> None:
     graph = as_digraph(G)
     result = check_rs_robustness(graph, r, s, **options)
     if result.verdict is Verdict.UNDECIDED:
-        raise Undecided(f"{_name(r, s)}ness was not decided: raise the time limit")
+        raise Undecided(f"{robust(r, s)}ness was not decided: raise the time limit")
     if result.verdict is Verdict.NOT_ROBUST:
         raise AssertionError(draw_violation(graph, result.witness, r, s))
 
@@ -65,22 +65,22 @@ def assert_not_robust(G: GraphLike, r: int, s: int = 1, **options: Any) -> Witne
     graph = as_digraph(G)
     result = check_rs_robustness(graph, r, s, **options)
     if result.verdict is Verdict.UNDECIDED:
-        raise Undecided(f"{_name(r, s)}ness was not decided: raise the time limit")
+        raise Undecided(f"{robust(r, s)}ness was not decided: raise the time limit")
     if result.verdict is Verdict.ROBUST:
         size = f"{counted(graph.n, 'node')}, {counted(graph.arc_count, 'arc')}"
-        raise AssertionError(f"{_name(r, s)}, though it should not be: {size}, no violating pair exists")
+        raise AssertionError(f"{robust(r, s)}, though it should not be: {size}, no violating pair exists")
     return result.witness
 
 
 def draw_violation(graph: Digraph, pair: Witness | None, r: int, s: int = 1) -> str:
     """Return in words and lines why ``pair`` violates (r,s)-robustness; a node marked * hears at least r outside."""
     if pair is None:
-        return f"not {_name(r, s)}: fewer than two nodes, and r is greater than their number"
+        return f"not {robust(r, s)}: fewer than two nodes, and r is greater than their number"
     sides = [graph.ids(side) for side in pair]
     reachable = [r_reachable_ids(graph, side, r) for side in sides]
     count, total = sum(map(len, reachable)), sum(map(len, sides))
     lines = [
-        f"not {_name(r, s)}: {count} of {counted(total, 'node')} of S1 and S2 hear {r} or more nodes outside their set"
+        f"not {robust(r, s)}: {count} of {counted(total, 'node')} of S1 and S2 hear {r} or more nodes outside their set"
     ]
     for name, side, reached in zip(("S1", "S2"), sides, reachable, strict=True):
         lines.append(f"  {name} = {_set_text(graph, side)}")
@@ -94,10 +94,6 @@ def draw_violation(graph: Digraph, pair: Witness | None, r: int, s: int = 1) -> 
             )
             lines.append(f"    {graph.labels[i]!r:<{width}} {'*' if i in reached else ' '}hears {parts}")
     return "\n".join(line.rstrip() for line in lines)
-
-
-def _name(r: int, s: int) -> str:
-    return f"{r}-robust" if s == 1 else f"({r},{s})-robust"
 
 
 def _set_text(graph: Digraph, ids: Iterable[int]) -> str:

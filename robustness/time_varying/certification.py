@@ -20,7 +20,7 @@ from robustness.digraph import GraphLike
 from robustness.errors import InternalError, InvalidParameter
 from robustness.limits import Limits, Progress
 from robustness.results import Verdict
-from robustness.spelled import counted
+from robustness.spelled import counted, robust
 from robustness.time_varying.front import check_joint_robustness
 from robustness.time_varying.results import JointResult
 from robustness.time_varying.sequence import TimeVaryingGraph, as_time_varying
@@ -145,7 +145,7 @@ def _refutation(sequence: TimeVaryingGraph, result: JointResult) -> tuple[int, d
         return result.examined, {"kind": "no-window"}, b""
     if found.witness is None:
         raise InvalidParameter(
-            f"({result.r},{result.s})-robust on {counted(sequence.n, 'node')} is settled by convention: "
+            f"{robust(result.r, result.s)} on {counted(sequence.n, 'node')} is settled by convention: "
             "nothing to certify"
         )
     union = sequence.union(found.start, found.length)

@@ -12,7 +12,7 @@ from robustness.errors import Undecided
 from robustness.evidence import Growth
 from robustness.results import Verdict, Witness
 from robustness.showing import Shown
-from robustness.spelled import counted
+from robustness.spelled import counted, robust
 from robustness.time_varying.sequence import TimeVaryingGraph
 
 __all__ = ["JointResult", "UnionVerdict", "Unions", "Violation"]
@@ -162,7 +162,7 @@ class JointResult(Shown):
     def decided(self) -> bool:
         """Return True for ROBUST and False for NOT_ROBUST; raise :class:`Undecided` otherwise."""
         if self.verdict is Verdict.UNDECIDED:
-            raise Undecided(f"joint ({self.r},{self.s})-robustness was not decided ({self.reason}): raise the limit")
+            raise Undecided(f"joint {robust(self.r, self.s)}ness was not decided ({self.reason}): raise the limit")
         return self.verdict is Verdict.ROBUST
 
     def failing_starts(self) -> tuple[int, ...]:
@@ -172,7 +172,7 @@ class JointResult(Shown):
 
     def summary(self) -> str:
         """Return the verdict in one line of plain words."""
-        what = f"{self.r}-robust" if self.s == 1 else f"({self.r},{self.s})-robust"
+        what = robust(self.r, self.s)
         if self.verdict is Verdict.UNDECIDED:
             known = f"; no window shorter than {self.at_least} will do" if self.at_least > 1 else ""
             return f"undecided: whether jointly {what}{known}"

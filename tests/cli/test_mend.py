@@ -135,7 +135,7 @@ def test_candidates_forbidden_required_and_range(platoon: Path, tmp_path: Path) 
     assert all(v - u == 2 for u, v in near["links"])
     barred = json.loads(run("mend", platoon, "-r", 2, "--forbid", tmp_path / "far.json", "--json").stdout)
     assert [0, 5] not in barred["links"]
-    forced = json.loads(run("mend", platoon, "-r", 2, "--require", tmp_path / "far.json", "--json").stdout)
+    forced = json.loads(run("mend", platoon, "-r", 2, "--mandatory", tmp_path / "far.json", "--json").stdout)
     assert [0, 5] in forced["links"]
     graph = nx.path_graph(6)
     nx.set_node_attributes(graph, {k: float(k) for k in graph}, "x")

@@ -168,6 +168,12 @@ class TestGate:
         )
         assert document("--require", "1", graph=wheel)["require"]["models"] == refuted
 
+    def test_where_nobody_lies_no_attack_is_blamed(self) -> None:
+        apart = encode_topology(nx.empty_graph(4))
+        assert tolerance("-q", "--require", "0", graph=apart).stdout == (
+            "refuted: f = 0 under every threat model: the network splits though nobody lies\n"
+        )
+
     def test_a_limit_is_undecided(self) -> None:
         graph = encode_topology(nx.random_regular_graph(10, 60, seed=1))
         found = document("--model", "delayed", "--require", "3", "--timeout", "0.2", graph=graph)

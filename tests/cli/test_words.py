@@ -30,9 +30,8 @@ MARKUP = re.compile(r":\w+:`|``|>>>|-----|\*\*|\*\w+\.?\*|\\b|\bNone\b|\bTrue\b|
 COMMANDS = robustness.list_commands(click.Context(robustness))
 HELPED = [(), *((name,) for name in COMMANDS), *(("build", name) for name in FAMILIES)]
 
-#: Options that mean two things: what is required of a network, and what has to be among new links; nodes of one graph,
-#: and of each sample; one file, and a folder of them.
-TWO_MEANINGS = {"--require", "--nodes", "--output", "--cost", "--expect", "--model", "--plot"}
+#: Options that mean two things: nodes of one graph, and of each sample; one file, and a folder of them.
+TWO_MEANINGS = {"--nodes", "--output", "--cost", "--expect", "--model", "--plot"}
 
 
 @pytest.mark.parametrize("asked", HELPED, ids=" ".join)
@@ -195,12 +194,12 @@ def test_pages_and_pictures_have_documents_too(tmp_path: Path) -> None:
     report = CliRunner().invoke(robustness, ["report", net, "-r", "2", "--no-models", "-o", page, "--json"])
     found = json.loads(report.stdout)
     assert (report.exit_code, found["schema"], found["output"]) == (10, "robustness/report/1", page)
-    assert found["verdict"] == "The network must be (2,1)-robust; it fails, with a counterexample."
+    assert found["verdict"] == "The network must be 2-robust; it fails, with a counterexample."
     assert ([row["gate"] for row in found["rows"]], found["is_complete"]) == (["refuted"], True)
     drawn = CliRunner().invoke(robustness, ["draw", net, "-r", "2", "-o", picture, "--json"])
     found = json.loads(drawn.stdout)
     assert (drawn.exit_code, found["schema"], found["verdict"]) == (0, "robustness/draw/1", "not-robust")
-    assert (found["graph"]["nodes"], found["output"], found["summary"]) == (6, picture, "not (2,1)-robust")
+    assert (found["graph"]["nodes"], found["output"], found["summary"]) == (6, picture, "not 2-robust")
     for command in ("report", "draw"):
         wrong = CliRunner().invoke(robustness, [command, net, "-o", net, "--json"])
         assert (wrong.exit_code, json.loads(wrong.stdout)["schema"]) == (2, "robustness/error/1")

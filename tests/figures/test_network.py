@@ -46,7 +46,7 @@ class TestMarks:
         for i in range(10):
             side = next(group for group in (marks.S1, marks.S2) if i in group)
             assert sum(arc[1] == i for arc in marks.counted) == len(set(PETERSEN[i]) - side) < 2
-        assert marks.title == "not (2,1)-robust"
+        assert marks.title == "not 2-robust"
         assert marks_of(graph, tuple(result.witness)).counted == marks.counted
 
     def test_a_trap_and_its_attack(self) -> None:
@@ -387,7 +387,7 @@ class TestCommand:
                 done = self.run(str(graph), *options, "-o", str(picture))
                 assert done.exit_code == 0, done.output
                 assert picture.stat().st_size > 1000
-        assert self.run(str(graph), "-r", "3", "-o", str(tmp_path / "x.svg")).stdout == "not (3,1)-robust\n"
+        assert self.run(str(graph), "-r", "3", "-o", str(tmp_path / "x.svg")).stdout == "not 3-robust\n"
 
     def test_wrong_use(self, tmp_path: Path) -> None:
         graph = tmp_path / "g.json"

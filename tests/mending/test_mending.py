@@ -113,11 +113,11 @@ class TestKnownOptima:
 class TestConstraints:
     def test_forbidden_and_required(self) -> None:
         free = rb.mend(nx.path_graph(5), 2)
-        forced = rb.mend(nx.path_graph(5), 2, require=[(0, 2), (1, 3)])
+        forced = rb.mend(nx.path_graph(5), 2, mandatory=[(0, 2), (1, 3)])
         assert {(0, 2), (1, 3)} <= set(forced.links)
         barred = rb.mend(nx.path_graph(5), 2, forbid=free.links)
         assert not set(barred.links) & set(free.links)
-        with pytest.raises(InvalidParameter, match="both required and forbidden"):
+        with pytest.raises(InvalidParameter, match="both mandatory and forbidden"):
             rb.mend(nx.path_graph(5), 2, require=[(0, 2)], forbid=[(2, 0)])
 
     def test_caps_on_what_a_node_hears(self) -> None:
