@@ -117,7 +117,7 @@ def _links(mended: MendResult) -> list[str]:
     shown = mended.dropped if mended.thinned else mended.links
     told = [f"  {'drop' if mended.thinned else 'add'}  {spelled(u)} {arrow} {spelled(v)}" for u, v in shown]
     if mended.witness is not None and mended.witness.S1:
-        told.append(f"no candidate breaks this: {mended.witness.goal}")
+        told.append(f"no candidate breaks these sets, so this is out of reach: {mended.witness.goal}")
         sides = (("M", mended.witness.M), ("S1", mended.witness.S1), ("S2", mended.witness.S2))
         told += [f"  {name:<3} {set_text(labels, mended.before.labels)}" for name, labels in sides if labels]
     return told
@@ -177,7 +177,7 @@ def _keep(
     found: MendResult,
     kept: Kept,
 ) -> None:
-    """Write the mended network, its certificates, and a picture."""
+    """Write the mended network, its certificates, and a picture; without one, of the sets that no candidate breaks."""
     from robustness.files import write_topology
 
     if kept.certificate is not None:
@@ -185,6 +185,12 @@ def _keep(
 
         _write(console, kept.certificate, certify_mending(found, **query.effort()))
     if found.cost is None:
+        is_drawn = kept.picture is not None and found.witness is not None and bool(found.witness.S1)
+        if kept.picture is not None and is_drawn:
+            _draw(console, found, kept.picture)
+        for path in (kept.output, kept.goal_certificate, None if is_drawn else kept.picture):
+            if path is not None:
+                console.talk(f"not written: {path}, as no links that reach the goal are known")
         return
     if kept.output is not None:
         write_topology(found.graph, kept.output)
@@ -192,10 +198,14 @@ def _keep(
     if kept.goal_certificate is not None:
         _write(console, kept.goal_certificate, _certificate(found, query))
     if kept.picture is not None:
-        from robustness.figures.network import draw_to_file
+        _draw(console, found, kept.picture)
 
-        draw_to_file(found.graph, found, kept.picture)
-        console.talk(f"wrote {kept.picture}")
+
+def _draw(console: Console, found: MendResult, path: Path) -> None:
+    from robustness.figures.network import draw_to_file
+
+    draw_to_file(found.graph, found, path)
+    console.talk(f"wrote {path}")
 
 
 def _write(console: Console, path: Path, data: bytes | None) -> None:

@@ -102,7 +102,9 @@ def command(
     else:
         color = {"agreement": "green", "split": "red", "undecided": "yellow"}[found.outcome]
         console.result(f"{click.style(found.outcome + ':', fg=color, bold=True)} {found.reason}")
-    if found.attack is not None and output is not None:
+    if output is not None and found.attack is None:
+        console.talk(f"not written: {output}, as no attack is known")
+    elif output is not None and found.attack is not None:
         replace_file(output, (json.dumps(found.attack.as_dict(), indent=1) + "\n").encode())
         console.talk(f"wrote {output}")
     ctx.exit(ExitCode.of_outcome(found.outcome, expect or "split"))

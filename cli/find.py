@@ -110,8 +110,8 @@ def command(
         console.document(SCHEMA, _document(result))
     else:
         _print(console, result, nodes, output)
-    if output is not None and result.graph is not None:
-        console.talk(f"wrote {output}")
+    if output is not None:
+        console.talk(f"not written: {output}, as no graph was found" if result.graph is None else f"wrote {output}")
     codes = {
         FindVerdict.FOUND: ExitCode.DONE,
         FindVerdict.IMPOSSIBLE: ExitCode.REFUTED,
