@@ -290,14 +290,18 @@ def _draw_arcs(
         ([arc for arc in marks.silenced if arc[1] in marks.S1 | marks.S2], _SILENCED, 1.4, "dotted"),
         ([arc for arc in marks.counted if arc[1] in marks.S1], "#0072b2", thick, "solid"),
         ([arc for arc in marks.counted if arc[1] not in marks.S1], "#b36b00", thick, "solid"),
-        *((_one_way(getattr(marks, name)), color, wide, style) for name, color, wide, style, _ in _CHANGED),
+        *(
+            (arcs, color, wide, style)
+            for name, color, wide, style, _ in _CHANGED
+            for arcs in _both_and_one_way(getattr(marks, name))
+        ),
     )
     # The corners of squares and diamonds stick out; heads end before them.
     cornered = marks.S2 | marks.M
     large = {node: _seen(size, graph, group) for _, group in _groups(graph, marks) for node in group}
     ends = [large[node] * (1.7 if node in cornered else 1.0) for node in picture]
     headed: list[tuple[int, int]] = []
-    links = {arc for group in _changed(marks) for arc in group if (arc[1], arc[0]) in group}
+    links = {arc for group in _changed(marks) for arc in _both_and_one_way(group)[0]}
     for arcs, color, thick, style in shapes:
         if arcs:
             shape = picture.copy()
@@ -324,10 +328,10 @@ def _faint_one_way(picture: nx.DiGraph, marks: Marks) -> list[tuple[int, int]]:
     return [(u, v) for u, v in picture.edges if not picture.has_edge(v, u) and (u, v) not in strong]
 
 
-def _one_way(arcs: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
-    """Return links that go both ways once."""
-    known = set(arcs)
-    return sorted((u, v) for u, v in known if u < v or (v, u) not in known)
+def _both_and_one_way(arcs: frozenset[tuple[int, int]]) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:
+    """Return the links that go both ways, each once, which have no heads, and the arcs that none runs against."""
+    both = {(u, v) for u, v in arcs if (v, u) in arcs}
+    return sorted((u, v) for u, v in both if u < v), sorted(arcs - both)
 
 
 def _arc_handles(marks: Marks) -> list[Any]:

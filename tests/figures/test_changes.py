@@ -7,6 +7,7 @@ from typing import Any
 
 import networkx as nx
 import pytest
+from matplotlib.patches import FancyArrowPatch
 
 import robustness as rb
 from robustness.digraph import as_digraph
@@ -52,6 +53,16 @@ def test_a_single_arc_stays_one_in_a_network_without_directions() -> None:
     marks = marks_of(as_digraph(PATH), found)
     assert found.links
     assert marks.added == frozenset(found.links)
+
+
+def test_what_goes_both_ways_has_no_head_and_single_arcs_have_one() -> None:
+    found = rb.mend(PATH, 2, one_way=True)
+    both = {link for link in found.links if link[::-1] in found.links}
+    assert 0 < len(both) < len(found.links)
+    ax = rb.draw(found.graph, found, ax=new_figure(6, 4).subplots())
+    thick = [patch for patch in ax.patches if isinstance(patch, FancyArrowPatch) and patch.get_linewidth() > 3]
+    kinds = sorted(type(patch.get_arrowstyle()).__name__ for patch in thick)
+    assert kinds == ["Curve"] * (len(both) // 2) + ["CurveFilledB"] * (len(found.links) - len(both))
 
 
 @pytest.mark.parametrize(
