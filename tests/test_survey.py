@@ -145,6 +145,10 @@ def test_sources(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(folder)
     assert expand(["*.json"]).names == ("net2.json", "net10.json")
     assert expand(["net2.json", "net2.json"]).notes == ("net2.json: asked for twice, surveyed once",)
+    spellings = ["net2.json", "./net2.json", "deep/../net2.json", str(folder / "net2.json")]
+    assert expand(spellings).names == ("net2.json",)
+    assert expand(spellings).notes == tuple(f"{each}: asked for twice, surveyed once" for each in spellings[1:])
+    assert len(expand(["topohub:sndlib/polska", "topohub:sndlib/geant", "net2.json"]).names) == 3
     assert "topohub:sndlib/geant" in expand(["topohub:sndlib/*"]).names
     with pytest.raises(rb.UnreadableTopology, match="the groups are"):
         expand(["topohub:nothing/*"])

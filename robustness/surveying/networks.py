@@ -52,15 +52,16 @@ def expand(paths: Iterable[str | os.PathLike[str]]) -> Sources:
     MissingExtra
         For a pattern of topohub names when the package topohub is not installed.
     """
-    names: dict[str, None] = {}
+    names: dict[str, str] = {}  # by where they are
     notes: list[str] = []
     for path in paths:
         text = os.fspath(path)
         for name in _matches(text, notes):
-            if name in names:
+            place = name if name.startswith(topohub_names.PREFIX) or name == "-" else os.path.abspath(name)
+            if place in names:
                 notes.append(note_of_twice(name))
-            names[name] = None
-    return Sources(tuple(names), tuple(notes))
+            names.setdefault(place, name)
+    return Sources(tuple(names.values()), tuple(notes))
 
 
 def note_of_twice(name: str) -> str:
