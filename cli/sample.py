@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import secrets
+import time
 from typing import TYPE_CHECKING
 
 import click
@@ -68,6 +70,8 @@ def command(
     from robustness.sampling import SampleResult, SampleVerdict, sample_robustness
 
     graph = load_graph(source)
+    seed = secrets.randbits(63) if seed is None else seed  # here, so that one that a limit stops tells it, too
+    started = time.monotonic()
     with ProgressLine(console) as line:
 
         def work() -> SampleResult:
@@ -79,7 +83,10 @@ def command(
         try:
             found = interruptibly(work, timeout, line.tick)
         except Overrun as limit:
-            found = SampleResult(SampleVerdict.UNDECIDED, r or 0, 1.0, nodes, repeats, 0, seed or 0, str(limit))
+            found = SampleResult(
+                SampleVerdict.UNDECIDED, r or 0, 1.0, min(nodes, graph.n), repeats, 0, seed, str(limit),
+                seconds=time.monotonic() - started,
+            )  # fmt: skip
     if as_json:
         console.document(SCHEMA, {"graph": graph_document(graph)} | found.as_dict())
     else:

@@ -15,6 +15,7 @@ import pytest
 from click.testing import CliRunner
 
 import robustness as rb
+from cli import interruption
 from cli.main import robustness as program
 from robustness.constructions.small_graphs import digraph_of_masks, digraphs_up_to_isomorphism, graphs_up_to_isomorphism
 from robustness.digraph import Digraph, as_digraph
@@ -113,6 +114,18 @@ def halves(n: int, across: int) -> nx.Graph:
     made.add_edges_from((i, half + (i + k) % half) for i in range(half) for k in range(across))
     return made
 
+    def test_bounds_of_many_or_large_samples_are_there_at_once_and_above_the_exact_ones(self) -> None:
+        """A million samples, and samples of thousands of nodes: numbers with millions of digits are not written out."""
+        one = chance_of_error(1000, 600, 121, 40, 1, 10)
+        for repeats in (2, 7, 1000):
+            exact = one**repeats
+            power = chance_of_error(1000, 600, 121, 40, repeats, 10)
+            assert exact <= power <= exact * Fraction(1001, 1000)
+        assert 0 < chance_of_error(1000, 600, 121, 40, 10**9, 10) < Fraction(1, 1 << 1100)
+        assert chance_of_error(1000, 600, 800, 40, 10**9, 1) == 1
+        assert least_needed(10**5, 50_000, 2000, 2000, 10**6, Fraction(1, 1000)) is not None
+        assert greatest_claim(10**5, 50_000, 2000, 10, 700, Fraction(1, 1000)) > 20_000
+
 
 class TestTheTest:
     def test_it_errs_no_more_often_than_it_says(self) -> None:
@@ -143,7 +156,8 @@ class TestTheTest:
         assert asked.chance <= 0.001
         more = sample_robustness(graph, 3 * found.r, nodes=26, repeats=6, seed=1)
         assert more.verdict is SampleVerdict.UNDECIDED
-        assert sample_robustness(graph, 150, nodes=4, repeats=1, seed=1).reason.startswith("samples of 4 nodes cannot")
+        assert sample_robustness(graph, 150, nodes=4, repeats=1, seed=1).reason.startswith("1 sample of 4 nodes cannot")
+        assert sample_robustness(graph, 151, seed=1).reason == "no network of 300 nodes is 151-robust"
 
     def test_the_same_seed_says_the_same_and_without_one_another_is_drawn(self) -> None:
         graph = nx.complete_graph(50)
@@ -157,6 +171,16 @@ class TestTheTest:
         hard = nx.gnp_random_graph(200, 0.5, seed=1, directed=True)
         late = sample_robustness(hard, nodes=80, repeats=2, seed=1, time_limit=1)
         assert late.verdict is SampleVerdict.UNDECIDED or late.chance <= 0.001
+
+    def test_what_is_printed_is_no_less_than_the_chance(self) -> None:
+        for seed in range(20):
+            found = sample_robustness(nx.complete_graph(60 + seed), repeats=1, seed=seed)
+            said = found.summary().partition("with probability ")[2].partition(" ")[0]
+            assert (
+                Fraction(said)
+                >= Fraction(found.chance)
+                >= chance_of_error(60 + seed, 59 + seed, found.r, 40, 1, found.q)
+            )
 
     def test_it_is_no_truth_value(self) -> None:
         found = sample_robustness(nx.complete_graph(60), 2, seed=1)
@@ -208,3 +232,15 @@ class TestCommand:
         done = CliRunner().invoke(program, ["sample", network, "-r", "40", "--nodes", "5"])
         assert done.exit_code == 30
         assert done.stdout.startswith("undecided: ")
+
+    def test_a_limit_that_comes_before_the_answer_tells_the_seed(
+        self, network: str, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        def late(*_: object, **options: object) -> None:
+            raise interruption.Overrun
+
+        monkeypatch.setattr("robustness.sampling.sample_robustness", late)
+        done = CliRunner().invoke(program, ["sample", network, "--nodes", "500", "--json"])
+        document = json.loads(done.stdout)
+        assert (done.exit_code, document["sample_verdict"], document["nodes"]) == (30, "undecided", 80)
+        assert document["seed"] > 0  # of 2^63 numbers that the system draws

@@ -8,6 +8,7 @@ cubes, and their transcripts, the last part's first, make the transcript of the 
 from __future__ import annotations
 
 import hashlib
+import json
 from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib.metadata import PackageNotFoundError
@@ -26,7 +27,7 @@ __all__ = ["Cube", "CubeQuestion", "Words", "ids_of", "software", "whole_state"]
 Words = npt.NDArray[np.uint64]
 
 #: Counts the ways in which coordinator and workers have talked to each other.
-_PROTOCOL = 1
+_PROTOCOL = 2
 
 
 @cache
@@ -129,11 +130,20 @@ class CubeQuestion:
     look_ahead: bool
     sharing: bool = True
 
+    @cached_property
+    def key(self) -> str:
+        """A digest of what is asked: cubes of several questions can be the same, and what is true of them is not."""
+        switches = self.spare, self.transcript, self.blockers, self.look_ahead, self.sharing
+        numbers = json.dumps([*self.hears.shape, *map(int, switches)]).encode()
+        data = self.hears.astype("<u8").tobytes() + self.need.astype("<i8").tobytes()
+        return hashlib.sha256(numbers + b" " + data).hexdigest()[:32]
+
     def as_task(self, cube: Cube, seconds: float) -> dict[str, Any]:
         """Return a cube, its question and its slice of time as plain values, for a worker."""
         states, flags = cube.to_wire()
         return {
             "software": software(),
+            "question": self.key,
             "cube": cube.key,
             "states": states,
             "symmetric": flags,

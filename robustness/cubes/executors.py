@@ -48,7 +48,10 @@ class CubeExecutor(Protocol):
         """Return how many cubes can be worked on at the same time now; 0 while there is no worker."""
 
     def submit(self, number: int, task: dict[str, Any]) -> None:
-        """Take a task, as :func:`robustness.cubes.solving.solve` does; its result is to come under this number."""
+        """Take a task, as :func:`robustness.cubes.solving.solve` does; its result is to come under this number.
+
+        What it raises counts as the loss of the task.
+        """
 
     def results(self, seconds: float) -> list[tuple[int, Any]]:
         """Wait at most so long for results; return each with its number, an exception in the place of one lost."""
@@ -160,17 +163,11 @@ class _Pool(_Futures):
         self._shares_memory = isinstance(pool, concurrent.futures.ThreadPoolExecutor)
 
     def width(self) -> int:
-        return int(getattr(self._pool, "_max_workers", 0)) or 1
+        return int(getattr(self._pool, "_max_workers", 0) or 1)
 
     def submit(self, number: int, task: dict[str, Any]) -> None:
         flag: tuple[Callable[[], bool], ...] = (self._stopped.is_set,) if self._shares_memory else ()
-        try:
-            self._watch(number, self._pool.submit(solve, task, *flag))
-        except RuntimeError as problem:  # a broken pool, or one that was shut down, takes nothing any more
-            self._pending[number] = None
-            failed: concurrent.futures.Future[Any] = concurrent.futures.Future()
-            failed.set_exception(problem)
-            self._watch(number, failed)
+        self._watch(number, self._pool.submit(solve, task, *flag))
 
 
 def solve_on_worker(task: dict[str, Any]) -> dict[str, Any]:
@@ -204,12 +201,7 @@ class _Dask(_Futures):
 
     def submit(self, number: int, task: dict[str, Any]) -> None:
         wanted = {} if not self._refused else {"workers": sorted(self._workers.keys() - self._refused)}
-        try:
-            future = self._client.submit(solve_on_worker, task, pure=False, **wanted)
-        except Exception as problem:  # noqa: BLE001 - a client that has lost its scheduler raises many things
-            future = concurrent.futures.Future()
-            future.set_exception(problem)
-        self._watch(number, future)
+        self._watch(number, self._client.submit(solve_on_worker, task, pure=False, **wanted))
 
     def _outcome(self, future: Any) -> Any:
         # A result that never was must not be fetched: Dask would log that as an error of its own.

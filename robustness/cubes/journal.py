@@ -23,6 +23,7 @@ from types import TracebackType
 from typing import IO, Any, Self
 
 from robustness.cubes.cube import Cube
+from robustness.cubes.heard import MOST
 from robustness.errors import InvalidParameter
 from robustness.transcripts import Spool
 
@@ -150,15 +151,18 @@ class CubeJournal:
         if content.get("question") == self._question:
             try:
                 self._take(content)
-            except (KeyError, TypeError, ValueError, zlib.error):
+            except (KeyError, TypeError, ValueError, OverflowError, zlib.error):
                 return False
         return True
 
     def _take(self, content: dict[str, Any]) -> None:
         rest = [Cube.from_wire((base64.b64decode(data), flags), self._words) for data, flags in content["rest"]]
         packed = base64.b64decode(content["transcript"])
+        nodes = int(content["nodes"])
+        if not 0 <= nodes < MOST:
+            raise ValueError(f"nodes are counted, not {nodes}")
         piece = self.spool.keep_packed(packed, len(zlib.decompress(packed))) if packed else None
-        entry: Entry = {"nodes": int(content["nodes"]), "piece": piece, "rest": rest}
+        entry: Entry = {"nodes": nodes, "piece": piece, "rest": rest}
         if "pair" in content:
             first, second = content["pair"]
             entry["pair"] = [int(i) for i in first], [int(i) for i in second]

@@ -41,8 +41,8 @@ def solve(task: dict[str, Any], stopped: Callable[[], bool] | None = None) -> di
     -------
     dict
         ``status``: "closed"; "open" with ``rest``, the cube that is left; "found" with ``pair``; or "refused", by a
-        worker of another version. ``transcript``: compressed, of what was refuted. ``nodes``, ``probes``, ``failed``
-        and ``seconds``.
+        worker of another version. ``question`` and ``cube``: digests of what was searched. ``transcript``: compressed,
+        of what was refuted. ``nodes``, ``probes``, ``failed`` and ``seconds``.
     """
     if task["software"] != software():
         return {"status": REFUSED, "software": software(), "cube": task["cube"]}
@@ -73,6 +73,7 @@ def solve(task: dict[str, Any], stopped: Callable[[], bool] | None = None) -> di
     result: dict[str, Any] = {
         "status": {CLOSED: CLOSED_CUBE, FOUND: PAIR_FOUND}.get(status, OPEN_CUBE),
         "software": software(),
+        "question": question.key,
         "cube": cube.key,
         "nodes": int(counters[NODES]),
         "failed": int(counters[FAILED]),

@@ -1,9 +1,9 @@
 """One search spread over many workers by cubes, none of whom is trusted with more than the cube in its hands.
 
 Cubes that outlast their slice of time come back and are cut where workers would run dry; the next slice is twice as
-long. A result counts once, for the cube it names, and only after it has been looked at: a violating pair is checked
-against the definition, a cube that is left must be one. A cube that is lost is given out again a few times, and then
-the verdict is UNDECIDED; so it is when no worker is left. What is closed goes into the journal first.
+long. A result counts once, for the question and the cube it names, and only after it has been looked at: a violating
+pair is checked against the definition, a cube that is left must be one. A cube that is lost is given out again a few
+times, and then the verdict is UNDECIDED; so it is when no worker is left. What is closed goes into the journal first.
 
 Whoever solves what, the verdict is the same. With transcripts these are joined in the order of the proof and whoever
 verifies the certificate trusts no worker; without, the answer says how many cubes rest on the word of workers.
@@ -13,11 +13,12 @@ from __future__ import annotations
 
 import concurrent.futures
 import hashlib
+import itertools
 import json
 import time
 import warnings
-import zlib
 from collections import deque
+from collections.abc import Hashable, Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -29,8 +30,9 @@ from robustness.answers import Answer
 from robustness.cubes.cube import Cube, CubeQuestion, software
 from robustness.cubes.estimate import Estimate, Walker
 from robustness.cubes.executors import CubeExecutor, cube_executor
+from robustness.cubes.heard import Heard, WrongResult, heard
 from robustness.cubes.journal import CubeJournal, Entry
-from robustness.cubes.solving import CLOSED_CUBE, OPEN_CUBE, PAIR_FOUND, REFUSED, solve
+from robustness.cubes.solving import PAIR_FOUND, solve
 from robustness.definitions import is_violation
 from robustness.digraph import Digraph, GraphWarning
 from robustness.evidence import Exhausted, Pair, Refutation
@@ -54,6 +56,9 @@ _ALONE = 60.0
 _WALKS, _ESTIMATE_EVERY, _ESTIMATE_SHARE = 100, 2.0, 0.05
 #: Seconds that an estimate may take: the last one is made when the time limit has passed.
 _ESTIMATE_SECONDS = 0.5
+
+#: No two tasks of this process have the same number: what an earlier search is told late is not taken for a later one.
+_NUMBERS = itertools.count(1)
 
 
 @dataclass(eq=False)
@@ -121,7 +126,7 @@ class _Spread:
         self.root = _Piece(Cube.whole(graph.n))
         self.waiting: deque[_Piece] = deque([self.root])
         self.running: dict[int, tuple[_Piece, float]] = {}
-        self.number = 0
+        self.overdue: dict[int, _Piece] = {}
         self.pair: Pair | None = None
         self.reason = self.refusal = ""
         self.stats: dict[str, Any] = {"nodes": 0, "failed_literals": 0, "probes": 0, "cubes": 0}
@@ -142,16 +147,33 @@ class _Spread:
             # What is over in a moment needs no worker.
             piece = self.waiting.popleft()
             self._hear(piece, solve(self.question.as_task(piece.cube, piece.seconds)))
-        while (self.waiting or self.running) and self.pair is None and not self.reason:
+        while self._is_open() and self.pair is None and not self.reason:
             self._give_out()
             for number, outcome in self.workers.results(0.05):
-                if number not in self.running:
-                    continue  # it came late or twice
-                piece, _ = self.running.pop(number)
-                if not piece.is_done and self.pair is None:
-                    self._hear(piece, outcome)
+                self._note(number, outcome)
             self._look_around()
         return self._answer()
+
+    def _pieces(self) -> Iterator[_Piece]:
+        """Return what waits, and what somebody works on; one that was overdue may be closed, or both."""
+        yield from self.waiting
+        yield from (piece for piece, _ in self.running.values())
+
+    def _is_open(self) -> bool:
+        return not all(piece.is_done for piece in self._pieces())
+
+    def _note(self, number: Any, outcome: Any) -> None:
+        """Take a result to the cube it was asked for; nothing when it comes twice, or is about another search."""
+        if not isinstance(number, Hashable):
+            return
+        if number in self.running:
+            piece, _ = self.running.pop(number)
+        elif number in self.overdue and not isinstance(outcome, BaseException):
+            piece = self.overdue.pop(number)  # given out again meanwhile: the answer that comes first counts
+        else:
+            return
+        if not piece.is_done and self.pair is None:
+            self._hear(piece, outcome)
 
     def _answer(self) -> Answer:
         self.stats |= {"trusted": self._trusted(), "lost": self.lost}
@@ -175,9 +197,12 @@ class _Spread:
     def _replay(self) -> None:
         """Take from the journal all that it knows."""
         known, self.waiting = self.waiting, deque()
+        met: set[str] = set()
         while known:
             piece = known.popleft()
-            entry = self.journal.entries.get(piece.cube.key)
+            # No cube is left of itself. A journal that says so is not followed round and round.
+            entry = None if piece.cube.key in met else self.journal.entries.get(piece.cube.key)
+            met.add(piece.cube.key)
             if entry is None:
                 self.waiting.append(piece)
             elif "pair" in entry:
@@ -198,12 +223,17 @@ class _Spread:
 
     def _give_out(self) -> None:
         width = self.workers.width()
-        while self.waiting and len(self.running) < _AHEAD * width:
+        while self.waiting and len(self.running) < _AHEAD * width and not self.reason:
             piece = self.waiting.popleft()
+            if piece.is_done:
+                continue
             seconds = max(min(piece.seconds, self.limits.seconds_left()), 0.01)
-            self.number += 1
-            self.running[self.number] = piece, time.monotonic() + _GRACE + _PATIENCE * seconds
-            self.workers.submit(self.number, self.question.as_task(piece.cube, seconds))
+            number = next(_NUMBERS)
+            self.running[number] = piece, time.monotonic() + _GRACE + _PATIENCE * seconds
+            try:
+                self.workers.submit(number, self.question.as_task(piece.cube, seconds))
+            except Exception as problem:  # noqa: BLE001 - whatever somebody has who takes nothing any more
+                self._note(number, problem)
 
     def _hear(self, piece: _Piece, outcome: Any) -> None:
         """Act on a result; anything that is not in order is a loss."""
@@ -211,54 +241,51 @@ class _Spread:
             self._lose(piece, f"{type(outcome).__name__}: {outcome}".splitlines()[0][:200])
             return
         try:
-            problem = self._take(piece, outcome)
-        except (KeyError, TypeError, ValueError, zlib.error) as broken:
-            problem = f"a result that cannot be read ({type(broken).__name__}: {broken})"
-        if problem:
-            self._lose(piece, problem)
+            result = heard(outcome, self.question, piece.cube)
+        except WrongResult as wrong:
+            self._lose(piece, str(wrong))
+            return
+        if result.version is not None:
+            self._refuse(piece, result, outcome)
+        elif result.status == PAIR_FOUND:
+            if self._take_pair(result.pair):
+                self.journal.remember(piece.cube, {"nodes": 0, "rest": [], "pair": result.pair}, b"")
+            else:
+                self._lose(piece, "a pair that violates nothing")
+        else:
+            self._take(piece, result)
 
-    def _take(self, piece: _Piece, result: dict[str, Any]) -> str:
-        """Take a result that is in order; return what is wrong with any other."""
-        if result["status"] == REFUSED or result["software"] != software():
-            is_avoided = self.workers.refuse(result)
-            who = f"worker {result['worker']}" if "worker" in result else "a worker"
-            word = f"{who} has version {result['software']}, not {software()}: install the same on all machines"
-            warnings.warn(f"refused: {word}", GraphWarning, stacklevel=2)
-            self.refusal = f" ({word})"
-            if is_avoided:
-                self.waiting.append(piece)
-                return ""
-            return word
-        if result["cube"] != piece.cube.key:
-            return "a result about another cube"
-        if result["status"] == PAIR_FOUND:
-            if not self._take_pair(result["pair"]):
-                return "a pair that violates nothing"
-            self.journal.remember(piece.cube, {"nodes": 0, "rest": [], "pair": result["pair"]}, b"")
-            return ""
+    def _refuse(self, piece: _Piece, result: Heard, outcome: dict[str, Any]) -> None:
+        """Give no more to a worker of another version, where its executor can tell it from the others."""
+        who = f"worker {result.worker}" if result.worker else "a worker"
+        word = f"{who} has version {result.version}, not {software()}: install the same on all machines"
+        warnings.warn(f"refused: {word}", GraphWarning, stacklevel=2)
+        self.refusal = f" ({word})"
+        if self.workers.refuse(outcome):
+            self.waiting.append(piece)
+        else:
+            self._lose(piece, word)
+
+    def _take(self, piece: _Piece, result: Heard) -> None:
+        """Write down what is closed, and what is left."""
         rest: list[Cube] = []
-        if result["status"] == OPEN_CUBE:
-            left = Cube.from_wire(result["rest"], self.question.hears.shape[1])
+        if result.rest is not None:
             short = _OPEN_EACH * max(self.workers.width(), 1) - len(self.waiting) - len(self.running)
-            rest = left.cut(max(1, short + 1))
-        elif result["status"] != CLOSED_CUBE:
-            return f"a result with the status {result['status']!r}"
-        packed = bytes(result["transcript"])
-        entry: Entry = {"nodes": int(result["nodes"]), "piece": None, "rest": rest}
+            rest = result.rest.cut(max(1, short + 1))
+        entry: Entry = {"nodes": result.nodes, "piece": None, "rest": rest}
         if self.question.transcript:
-            entry["piece"] = self.journal.spool.keep_packed(packed, len(zlib.decompress(packed)))
-        self.journal.remember(piece.cube, entry, packed)
+            entry["piece"] = self.journal.spool.keep_packed(result.packed, result.size)
+        self.journal.remember(piece.cube, entry, result.packed)
         self.told["by workers"] += not rest
-        self.stats["failed_literals"] += int(result["failed"])
-        self.stats["probes"] += int(result["probes"])
-        self.fresh_nodes += entry["nodes"]
-        self.busy_seconds += float(result["seconds"])
+        self.stats["failed_literals"] += result.failed
+        self.stats["probes"] += result.probes
+        self.fresh_nodes += result.nodes
+        self.busy_seconds += result.seconds
         self.waiting.extend(reversed(self._settle(piece, entry)))
-        return ""
 
     def _take_pair(self, sides: Any) -> bool:
         """Take a violating pair after checking it against the definition."""
-        first, second = (frozenset(int(i) for i in side) for side in sides)
+        first, second = map(frozenset, sides)
         is_pair = all(0 <= i < self.graph.n for i in first | second)
         if is_pair and is_violation(self.graph, first, second, self.r, self.s):
             self.pair = Pair(first, second)
@@ -268,10 +295,9 @@ class _Spread:
     def _lose(self, piece: _Piece, why: str) -> None:
         self.lost += 1
         piece.tries += 1
+        self.waiting.append(piece)
         if piece.tries >= _TRIES:
             self.reason = f"a cube was lost {piece.tries} times: {why}"
-        else:
-            self.waiting.append(piece)
 
     def _look_around(self) -> None:
         """See to the clock, to workers that are gone or silent, to the estimate and to progress."""
@@ -287,6 +313,7 @@ class _Spread:
             if now > due:
                 del self.running[number]
                 if not piece.is_done:
+                    self.overdue[number] = piece
                     self._lose(piece, f"nothing was heard of it for {_GRACE:.0f} seconds and {_PATIENCE} slices")
         if now >= self.next_estimate and self.limits.progress is not None:
             self._estimate()
@@ -299,7 +326,7 @@ class _Spread:
 
     def _estimate(self) -> None:
         """Estimate what is left of the cubes that are open."""
-        pieces = [*self.waiting, *(piece for piece, _ in self.running.values() if not piece.is_done)]
+        pieces = list(dict.fromkeys(piece for piece in self._pieces() if not piece.is_done))
         if not pieces:
             return
         left, low, high = self.walker.nodes_left([piece.cube for piece in pieces], _WALKS, _ESTIMATE_SECONDS)

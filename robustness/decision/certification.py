@@ -13,7 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from certificates import MalformedCertificate
+from certificates import MalformedCertificate, RejectedCertificate
 from certificates.verification import FORMAT
 from robustness.answers import Answer, Question, Verdict, answers_in_turn
 from robustness.cubes.executors import require_executor
@@ -121,9 +121,11 @@ def certify_within(
     header = _header(graph, r, s, result.verdict, proof[0])
     try:
         claim, cubes = verify_listing(graph.canonical_bytes(), header, proof[1], limits)
-    except (MalformedCertificate, Undecided) as problem:
-        is_late = isinstance(problem, Undecided)
-        reason = str(problem) if is_late else f"the proof is beyond what the kernel checks: {problem}"
+    except (MalformedCertificate, RejectedCertificate, Undecided) as problem:
+        is_told = limits.executor is not None or limits.state is not None
+        if isinstance(problem, RejectedCertificate) and not is_told:
+            raise InternalError(f"the certificate does not prove {result.summary()}: please report") from problem
+        reason = _why_not(problem)
         if result.verdict is Verdict.NOT_ROBUST:  # the pair was re-checked: only its certificate cannot be written
             return replace(result, stats={**answer.stats, "reason": reason})
         return RobustnessResult.of(
@@ -134,6 +136,15 @@ def certify_within(
     if output is None:
         return replace(result, certificate=header + bytes(proof[1]))
     return replace(result, stats={**result.stats, "written": write_with_cubes(output, header, proof[1], cubes)})
+
+
+def _why_not(problem: MalformedCertificate | RejectedCertificate | Undecided) -> str:
+    """Return why there is no certificate."""
+    if isinstance(problem, RejectedCertificate):
+        return f"what workers or the journal told is no proof, so begin with a fresh journal: {problem}"
+    if isinstance(problem, Undecided):
+        return str(problem)
+    return f"the proof is beyond what the kernel checks: {problem}"
 
 
 def _proven(question: Question, limits: Limits, shortest: bool) -> tuple[Answer, Encoded | None]:

@@ -29,6 +29,9 @@ from fractions import Fraction
 
 __all__ = ["chance_of_error", "greatest_claim", "least_needed"]
 
+#: Binary digits that a power may have to be exact; of longer ones so many, rounded up, and none below 2 to minus this.
+_EXACT, _DIGITS, _LEAST = 100_000, 256, 2000
+
 
 def chance_of_error(n: int, least_degree: int, r: int, nodes: int, repeats: int, q: int) -> Fraction:
     """Return a bound on the probability that all samples of a network that is not r-robust are q-robust.
@@ -50,21 +53,49 @@ def chance_of_error(n: int, least_degree: int, r: int, nodes: int, repeats: int,
     size = min(n, max(1, least_degree - r + 2))
     missed = Fraction(math.comb(n - size, nodes), math.comb(n, nodes))
     one = nodes * _tail(n - 1, min(r, n) - 1, nodes - 1, q) + 2 * missed
-    return min(Fraction(1), one) ** repeats
+    return _power(min(Fraction(1), one), repeats)
+
+
+def _power(chance: Fraction, repeats: int) -> Fraction:
+    """Return a power of a probability; when it has very many digits, a number above it that has few."""
+    if chance in (0, 1) or chance.denominator.bit_length() * repeats < _EXACT:
+        return chance**repeats
+    whole, factor = Fraction(1), chance
+    while repeats:
+        if repeats & 1:
+            whole = _shortened(whole * factor)
+        factor = _shortened(factor * factor)
+        repeats >>= 1
+    return whole
+
+
+def _shortened(chance: Fraction) -> Fraction:
+    """Return a number of few digits that is not less than a probability, and not zero."""
+    places = min(max(0, chance.denominator.bit_length() - chance.numerator.bit_length()), _LEAST) + _DIGITS
+    return Fraction(-((-chance.numerator << places) // chance.denominator), 1 << places)
 
 
 def _tail(population: int, marked: int, drawn: int, least: int) -> Fraction:
     """Return the probability of ``least`` or more marked elements among those drawn."""
-    below = sum(math.comb(marked, k) * math.comb(population - marked, drawn - k) for k in range(min(least, drawn + 1)))
+    rest = population - marked
+    fewest = max(0, drawn - rest)
+    below, ways = 0, math.comb(marked, fewest) * math.comb(rest, drawn - fewest)
+    for k in range(fewest, min(least, drawn + 1)):
+        below += ways
+        ways = ways * (marked - k) * (drawn - k) // ((k + 1) * (rest - drawn + k + 1))
     return 1 - Fraction(below, math.comb(population, drawn))
 
 
 def least_needed(n: int, least_degree: int, r: int, nodes: int, repeats: int, level: Fraction) -> int | None:
     """Return the least q for which the bound is at most ``level``; None when no sample could have it."""
-    for q in range(1, (nodes + 1) // 2 + 1):
-        if chance_of_error(n, least_degree, r, nodes, repeats, q) <= level:
-            return q
-    return None
+    low, high = 1, (nodes + 1) // 2
+    while low < high:
+        middle = (low + high) // 2
+        if chance_of_error(n, least_degree, r, nodes, repeats, middle) <= level:
+            high = middle
+        else:
+            low = middle + 1
+    return low if chance_of_error(n, least_degree, r, nodes, repeats, low) <= level else None
 
 
 def greatest_claim(n: int, least_degree: int, nodes: int, repeats: int, q: int, level: Fraction) -> int:

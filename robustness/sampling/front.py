@@ -10,6 +10,7 @@ from collections.abc import Callable
 from fractions import Fraction
 
 from robustness.decision.front import check_rs_robustness, determine_robustness
+from robustness.definitions import largest_conceivable_r
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.limits import Limits, Progress
@@ -112,9 +113,7 @@ class _Test:
         n = self.graph.n
         needed = None if r is None else least_needed(n, self.least_degree, r, self.nodes, self.repeats, self.level)
         if r is not None and needed is None:
-            return self._undecided(
-                r, 0, f"samples of {counted(self.nodes, 'node')} cannot speak for r = {r}: take more", started
-            )
+            return self._undecided(r, 0, self._why_never(r), started)
         q, reason = self._least_of_samples(needed)
         if needed is not None and r is not None:
             if q < needed:
@@ -129,6 +128,13 @@ class _Test:
             SampleVerdict.LIKELY, r, _rounded_up(chance), self.nodes, self.repeats, q, self.seed,
             seconds=time.monotonic() - started,
         )  # fmt: skip
+
+    def _why_never(self, r: int) -> str:
+        """Return why no samples of this size could speak for r."""
+        if r > largest_conceivable_r(self.graph.n):
+            return f"no network of {counted(self.graph.n, 'node')} is {r}-robust"
+        what = f"{counted(self.repeats, 'sample')} of {counted(self.nodes, 'node')}"
+        return f"{what} cannot speak for r = {r}: take larger ones"
 
     def _undecided(self, r: int, q: int, reason: str, started: float) -> SampleResult:
         seconds = time.monotonic() - started

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass, field
+from decimal import ROUND_CEILING, Context, Decimal
 from typing import Any, NoReturn
 
 from robustness.spelled import counted
@@ -64,8 +65,8 @@ class SampleResult(Told):
         return (
             f"likely {self.r}-robust, not a proof: {counted(self.repeats, 'random sample')} of "
             f"{counted(self.nodes, 'node')} {'is' if self.repeats == 1 else 'are all'} "
-            f"{self.q}-robust; of a network that is not {self.r}-robust they are with probability {self.chance:.2g} "
-            f"at most"
+            f"{self.q}-robust; of a network that is not {self.r}-robust they are with probability "
+            f"{_rounded_up(self.chance)} at most"
         )
 
     def evidence(self) -> list[tuple[str, str]]:
@@ -86,3 +87,12 @@ class SampleResult(Told):
             "reason": self.reason,
             "seconds": round(self.seconds, 6),
         }
+
+
+def _rounded_up(chance: float) -> str:
+    """Return a probability in two digits that are not less than it.
+
+    >>> [_rounded_up(x) for x in (0.000744, 0.000741, 1.0, 0.0, 1e-6, 0.0996)]
+    ['0.00075', '0.00075', '1', '0', '1e-06', '0.1']
+    """
+    return f"{float(Context(prec=2, rounding=ROUND_CEILING).plus(Decimal(repr(chance)))):.2g}"

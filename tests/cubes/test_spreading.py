@@ -156,6 +156,16 @@ def test_another_version_is_refused_with_a_word() -> None:
     assert solve({**task, "software": "older"})["status"] == "refused"
 
 
+def silent_at_first() -> Callable[[int, dict[str, Any]], list[Any]]:
+    kept: list[dict[str, Any]] = []
+
+    def meddle(_: int, result: dict[str, Any]) -> list[Any]:
+        kept.append(result)
+        return [] if len(kept) == 1 else [result]
+
+    return meddle
+
+
 class Silent(Faulty):
     """An executor that loses its first task without a word, and has no workers after a while."""
 
@@ -166,7 +176,7 @@ class Silent(Faulty):
 def test_silence_is_not_waited_for_for_ever(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(spreading, "_GRACE", 0.0)
     monkeypatch.setattr(spreading, "_PATIENCE", 1)
-    found = rb.certify(*SMALL, evidence="refutation", executor=Faulty(lambda number, x: [] if number == 1 else [x]))
+    found = rb.certify(*SMALL, evidence="refutation", executor=Faulty(silent_at_first()))
     assert found.verdict is rb.Verdict.ROBUST
     assert found.stats["lost"] >= 1
     monkeypatch.setattr(spreading, "_ALONE", 0.1)
