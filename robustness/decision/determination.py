@@ -63,6 +63,8 @@ class _Work:
         """Decide (r,s)-robustness by an exact algorithm, after bounds have said what they can."""
         self.name = "subset-search" if self.algorithm == "auto" else self.algorithm
         answer = _searched(self.graph, r, s, self.name, limits)
+        if answer.verdict is not Verdict.UNDECIDED:  # why an earlier, shorter search ended says nothing any more
+            self.stats = {key: value for key, value in self.stats.items() if key not in ("reason", "estimate")}
         for key, value in answer.stats.items():
             is_count = isinstance(value, int) and not isinstance(value, bool)
             self.stats[key] = self.stats.get(key, 0) + value if is_count else value
