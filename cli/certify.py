@@ -57,7 +57,7 @@ SCHEMA = "robustness/certify/1"
     show_default=True,
     help="With veripb: the version of the proof format.",
 )
-@query_options(cluster=True)
+@query_options(cluster=True, verifies=True)
 def command(
     ctx: click.Context,
     console: Console,

@@ -117,7 +117,7 @@ def speaking(command: _Command) -> _Command:
 
 
 def query_options(
-    *, algorithm: bool = False, cluster: bool = False, state: bool = True
+    *, algorithm: bool = False, cluster: bool = False, state: bool = True, verifies: bool = False
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Add the common options to a command, which gets the context, the console and a :class:`Query`.
 
@@ -125,6 +125,9 @@ def query_options(
     ----------
     algorithm, cluster, state : bool
         Whether the command has --algorithm, --cluster, and with it --state.
+    verifies : bool
+        Whether it verifies long proofs, with as many processes as a cluster of this machine has. Others do with their
+        executor what they would do with threads, and a solver with more threads proposes other graphs.
     """
 
     def add(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -141,7 +144,7 @@ def query_options(
             **own: Any,
         ) -> Any:
             executor = None if cluster is None else joined_cluster(cluster)
-            jobs = max(jobs, _processes_here(cluster))
+            jobs = max(jobs, _processes_here(cluster) if verifies else 1)
             return command(*arguments, Query(as_json, algorithm, timeout, jobs, seed, executor, cubes), **own)
 
         wrapped: Callable[..., Any] = speaking(with_query)

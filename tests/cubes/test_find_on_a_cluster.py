@@ -6,12 +6,14 @@ import logging
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from pathlib import Path
 from typing import Any
 
 import pytest
 from click.testing import CliRunner
 
 import robustness as rb
+from cli import query
 from cli.main import robustness as program
 from robustness.cubes import opened_cluster, spreading
 from robustness.cubes.executors import mapped
@@ -69,6 +71,33 @@ def test_traps_are_not_searched_for_by_an_executor() -> None:
         found = rb.find_graph(9, ["2-robust", "trap(1)"], ["trap(0)"], executor=pool, time_limit=60)
     assert found.graph is not None
     assert found.graph.graph["trap"] is not None
+
+
+@pytest.mark.parametrize(
+    ("command", "front", "jobs"),
+    [
+        (["find", "-n", "26", "-p", "6-robust"], "robustness.graph_search.find_graph", 1),
+        (["check", "topohub:sndlib/abilene", "-r", "1"], "robustness.decision.front.check_rs_robustness", 1),
+        (["check", "topohub:sndlib/abilene"], "robustness.decision.front.determine_robustness", 1),
+        (["certify", "topohub:sndlib/abilene", "-r", "1", "-o"], "robustness.decision.certification.certify", 2),
+    ],
+    ids=["find", "check", "determine", "certify"],
+)
+def test_workers_of_this_machine_are_processes_to_verify_with_and_no_threads_of_solvers(
+    command: list[str], front: str, jobs: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """With more threads CP-SAT proposes other graphs, and it may take minutes longer to."""
+    asked: list[Any] = []
+
+    def refuse(*_: Any, **options: Any) -> None:
+        asked.append(options["jobs"])
+        raise rb.InvalidParameter("enough")
+
+    monkeypatch.setattr(front, refuse)
+    monkeypatch.setattr(query, "joined_cluster", lambda _: object())
+    target = [str(tmp_path / "proof")] if command[-1] == "-o" else []
+    assert CliRunner().invoke(program, [*command, *target, "--cluster", "local:2"]).exit_code == 2
+    assert asked == [jobs]
 
 
 def test_an_executor_that_is_none() -> None:
