@@ -32,6 +32,9 @@ LIST_SCHEMA = "robustness/build-list/1"
 class FamilyGroup(SuggestingGroup):
     """One subcommand per family, its options made from the family's parameters."""
 
+    noun = "family"
+    where = "robustness build --list names all"
+
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of all families."""
         from robustness.constructions import FAMILIES
@@ -89,11 +92,11 @@ def _print_list(console: Console, as_json: bool) -> None:
         return
     width = max(map(len, FAMILIES))
     for family in FAMILIES.values():
-        flags = " ".join(
-            f"--{each.name} {_METAVARS[each.kind]}" if each.required else f"[--{each.name}]"
-            for each in family.parameters
+        flags = (f"--{each.name} {_METAVARS[each.kind]}".rstrip() for each in family.parameters)
+        shown = " ".join(
+            flag if each.required else f"[{flag}]" for flag, each in zip(flags, family.parameters, strict=True)
         )
-        console.result(f"{family.name:<{width}}  {flags}")
+        console.result(f"{family.name:<{width}}  {shown}".rstrip())
         console.result(f"{'':<{width}}  {_plain(family.summary)} {family.value}.")
 
 
@@ -194,7 +197,7 @@ def _build(console: Console, name: str, parameters: Mapping[str, Any], output: s
         console.document(SCHEMA, document)
     elif output is None:
         console.content(encode_with_attributes(graph).decode("ascii").rstrip("\n"))
-    said = [f"{name}: {counted(len(graph), 'node')}, {graph.size()} {'arcs' if graph.is_directed() else 'edges'}"]
+    said = [f"{name}: {counted(len(graph), 'node')}, {counted(graph.size(), 'arc' if graph.is_directed() else 'edge')}"]
     said.append(_known_text(known))
     if "trap" in graph.graph:
         sets = graph.graph["trap"].items()

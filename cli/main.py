@@ -114,7 +114,9 @@ def _report(console: Console, problem: BaseException) -> ExitCode:
             where = f" at {problem}" if str(problem) else ""
             message = f"interrupted{where}: nothing is claimed"
         case _ if isinstance(problem, MemoryError):
-            message = "error: out of memory: nothing is claimed"
+            message = "undecided: out of memory: nothing is claimed"
+        case ExitCode.UNDECIDED:
+            message = f"undecided: {problem}"
         case ExitCode.INTERNAL_ERROR:
             hint = "" if console.is_verbose else "; -v shows where"
             message = f"internal error, not a verdict: {type(problem).__name__}: {problem}{hint}"
@@ -125,7 +127,7 @@ def _report(console: Console, problem: BaseException) -> ExitCode:
         case _:
             message = f"error: {problem}"
     console.error(message)
-    console.error_document(code, message.removeprefix("error: "))
+    console.error_document(code, message.removeprefix("error: ").removeprefix("undecided: "))
     return code
 
 

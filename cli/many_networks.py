@@ -35,6 +35,22 @@ __all__ = [
     "state_option",
 ]
 
+#: How many files that could not be read are told one by one where no table shows them.
+_MOST_TOLD = 3
+
+
+class _Listing(click.File):
+    """A list of paths, of a file or of standard input."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Open it."""
+        if value == "-" and sys.stdin is None:  # as after `<&-` in a shell
+            from robustness.errors import UnreadableTopology
+
+            raise UnreadableTopology("standard input: is closed")
+        return super().convert(value, param, ctx)
+
+
 state_option = click.option(
     "--state",
     type=click.Path(dir_okay=False, path_type=Path),
@@ -48,7 +64,7 @@ _OPTIONS: tuple[Callable[[Any], Any], ...] = (
     click.option(
         "--from",
         "listed",
-        type=click.File("r", encoding="utf-8"),
+        type=_Listing("r", encoding="utf-8"),
         metavar="FILE",
         help="A file with one PATH a line (# begins a comment); - is standard input.",
     ),
@@ -139,6 +155,8 @@ def many_networks_options(command: Callable[..., Any]) -> Callable[..., Any]:
                 "--no-models looks at none: leave out --model and --require, or leave out --no-models."
             )
         wanted = (*paths, *_lines_of(listed))
+        if not wanted and listed is not None:
+            raise click.UsageError(f"--from: {listed.name} names no network.")
         if not wanted:
             raise click.UsageError("name a file, a folder, a pattern or topohub names, or a list of them with --from.")
         from robustness.surveying import Gate
@@ -234,8 +252,15 @@ def run_survey(
         line.wipe()
 
 
-def exit_code(console: Console, found: Survey, is_interrupted: bool, written: Iterable[str]) -> ExitCode:
+def exit_code(
+    console: Console, found: Survey, is_interrupted: bool, written: Iterable[str], *, has_shown_rows: bool
+) -> ExitCode:
     """Return the exit code of a survey, and say what was left out and what was written."""
+    unread = [] if has_shown_rows else [row.error for row in found.rows if row.error]
+    for problem in unread[:_MOST_TOLD]:
+        console.warn(problem)
+    if len(unread) > _MOST_TOLD:
+        console.warn(f"{len(unread) - _MOST_TOLD} more could not be read: their rows say why")
     for line in written:
         console.talk(line)
     if is_interrupted:

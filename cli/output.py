@@ -22,6 +22,8 @@ import click
 
 from robustness.spelled import plural
 
+from .exit_codes import ExitCode
+
 if TYPE_CHECKING:
     from certificates.graph import Label
     from robustness.digraph import Digraph
@@ -87,7 +89,8 @@ class Console:
     def error_document(self, code: int, message: str) -> None:
         """With --json and no document so far: print one that says why, so that a program need not read words."""
         if self.as_json and not self.has_document:
-            self.document(ERROR_SCHEMA, {"exit_code": int(code), "error": message})
+            verdict = {"verdict": "undecided"} if code == ExitCode.UNDECIDED else {}
+            self.document(ERROR_SCHEMA, {"exit_code": int(code), **verdict, "error": message})
 
     def talk(self, text: str) -> None:
         """Say something that is no result; -q silences it."""
@@ -176,11 +179,12 @@ def terminal_width(stream: TextIO | None = None) -> int | None:
 
 
 def wrapped(text: str, *, indent: str = "", hanging: str = "") -> str:
-    """Return text in lines that fit the terminal, 100 letters where there is none; words are never cut.
+    """Return text in lines that fit the terminal that results go to, in one piece where it is none; no word is cut.
 
     ``indent`` stands before the first line, ``hanging`` before the others.
     """
-    return _filled(text, shutil.get_terminal_size((100, 24)).columns, indent, hanging)
+    columns = terminal_width()
+    return indent + text if columns is None else _filled(text, columns, indent, hanging)
 
 
 def _filled(text: str, columns: int, indent: str = "", hanging: str = "") -> str:

@@ -84,4 +84,5 @@ def command(
         console.document(SCHEMA, content)
     else:
         console.result(told)
-    ctx.exit(exit_code(console, found, is_interrupted, [f"wrote {output} ({counted(len(found), 'network')})"]))
+    written = [f"wrote {output} ({counted(len(found), 'network')})"]
+    ctx.exit(exit_code(console, found, is_interrupted, written, has_shown_rows=as_json))

@@ -89,4 +89,4 @@ def command(
                 content = fitted(found.listed, found.models, columns)
             console.content(content.rstrip("\n"))
         console.talk(headline(found, networks.gate))
-    ctx.exit(exit_code(console, found, is_interrupted, written))
+    ctx.exit(exit_code(console, found, is_interrupted, written, has_shown_rows=as_json or output is None))

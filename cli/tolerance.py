@@ -319,7 +319,9 @@ def _lines(report: Report, source: str, console: Console) -> Iterator[str]:
             yield from _evidence(result, report.confirmed[result.model])
     kind = "directed" if graph.directed else "undirected"
     yield ""
-    yield f"graph      {source}: {counted(graph.n, 'node')}, {counted(graph.arc_count, 'arc')}, {kind}"
+    over = table.results[0].sequence if table.results else None
+    of = "" if over is None else f" in the union of {counted(len(over), 'step')}"
+    yield f"graph      {source}: {counted(graph.n, 'node')}, {counted(graph.arc_count, 'arc')}{of}, {kind}"
     if not console.is_verbose:
         yield "evidence   -v shows the theorem and the evidence for each line, -o DIR writes certificates and attacks"
     yield f"time       {report.seconds:.3f} s"

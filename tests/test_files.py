@@ -280,8 +280,19 @@ class TestPaths:
             read_topology("-")
 
     def test_errors_name_the_file(self) -> None:
-        with pytest.raises(UnreadableTopology, match=r"^standard input: line 1, column 1"):
-            read_topology("-", io.BytesIO(b""))
+        with pytest.raises(UnreadableTopology, match=r"^standard input: line 1, column 2"):
+            read_topology("-", io.BytesIO(b"{"))
+
+    @pytest.mark.parametrize("suffix", sorted(FORMATS))
+    @pytest.mark.parametrize("content", [b"", b"\n \n"])
+    def test_an_empty_file_is_called_empty(self, tmp_path: Path, suffix: str, content: bytes) -> None:
+        """Whatever the format: each parser would miss something else."""
+        place = tmp_path / f"net{suffix}"
+        place.write_bytes(content)
+        with pytest.raises(UnreadableTopology, match=rf"^{place}: is empty$"):
+            read_topology(place)
+        with pytest.raises(UnreadableTopology, match=r"^standard input: nothing came$"):
+            read_topology("-", io.BytesIO(content))
 
 
 class TestWriting:
@@ -371,7 +382,7 @@ class TestTopohub:
     def test_without_the_package_the_fix_is_named(self, monkeypatch: pytest.MonkeyPatch) -> None:
         topohub_names.list_names.cache_clear()
         monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
-        with pytest.raises(MissingExtra, match="pip install topohub"):
+        with pytest.raises(MissingExtra, match=r"pip install 'graph-robustness\[topologies\]'"):
             read_topology("topohub:topozoo/Abilene")
         topohub_names.list_names.cache_clear()
 

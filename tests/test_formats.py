@@ -315,6 +315,33 @@ class TestArrays:
         with pytest.raises(rb.InvalidParameter, match="labels name all 2 nodes"):
             rb.from_adjacency(matrix, labels=["x"])
 
+    def test_distances_are_not_taken_for_a_network_in_silence(self) -> None:
+        """A table of distances has no 0 beside the diagonal; numbers that are all the same are a complete network."""
+        whole = np.array([[0, 3, 4], [3, 0, 5], [4, 5, 0]])
+        text = {".csv": ",", ".txt": " "}
+        for numbers, warned in (
+            (whole, True),
+            (np.ones((3, 3)), False),
+            (np.array([[0, 3, 0], [3, 0, 5], [0, 5, 0]]), False),
+        ):
+            files = {".npy": io.BytesIO(), **{suffix: io.BytesIO() for suffix in text}}
+            for suffix, mark in text.items():
+                np.savetxt(files[suffix], numbers, fmt="%.17g", delimiter=mark)
+            np.save(files[".npy"], numbers.astype(np.uint8))
+            for suffix, file in files.items():
+                with warnings.catch_warnings(record=True) as caught:
+                    warnings.simplefilter("always", GraphWarning)
+                    graph = decode_topology(file.getvalue(), suffix)
+                assert [
+                    ("everybody is linked" in str(each.message)) for each in caught if "entry" in str(each.message)
+                ] == [True] * warned, suffix
+                assert graph.arc_count == np.count_nonzero(numbers - np.diag(np.diag(numbers)))
+            for array in (numbers.astype(np.uint8), numbers.astype(float)):
+                with warnings.catch_warnings(record=True) as caught:
+                    warnings.simplefilter("always", GraphWarning)
+                    rb.from_adjacency(array)
+                assert any("everybody is linked" in str(each.message) for each in caught) == warned
+
     def test_other_things_in_memory(self) -> None:
         igraph = pytest.importorskip("igraph")
         graph = igraph.Graph(directed=True)

@@ -273,3 +273,20 @@ class TestNames:
     def test_no_file_is_named_for_nothing(self) -> None:
         vague = re.compile(r"(utils?|helpers?|common|misc|.*_(v2|old|new))\.py")
         assert [path.name for package in PACKAGES for path in sources(package) if vague.fullmatch(path.name)] == []
+
+
+def test_a_missing_package_is_told_with_the_extra_that_has_it() -> None:
+    """In quotes, without which zsh takes the brackets for a pattern; by its own name only where no extra has it."""
+    extras = PYPROJECT["project"]["optional-dependencies"]
+    held = {re.split(r"[<>=]", each)[0] for name, needs in extras.items() if name != "dev" for each in needs}
+    told = [
+        advice
+        for path in (ROOT / "robustness").rglob("*.py")
+        for advice in re.findall(
+            r"raise MissingExtra\([^\n]*?pip install ([^\n]*?)\"\)", path.read_text(encoding="utf-8")
+        )
+    ]
+    assert len(told) > 8
+    for advice in told:
+        extra = re.fullmatch(r"'graph-robustness\[(\w+)\]'", advice)
+        assert extra[1] in extras if extra else advice.isalpha() and advice not in held, advice

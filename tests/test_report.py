@@ -103,6 +103,17 @@ class TestWords:
         assert both.startswith(f"{1 + words.startswith('The network survives')} of 2 networks survive")
         assert ("1 was not decided within the limit" in both) == words.startswith("Whether")
 
+    def test_of_networks_that_nobody_decided_none_is_said_to_fail(self) -> None:
+        """None of two survive is false when one of them may."""
+        lost = Row("a", 4, 0, False, guaranteed={"delayed": 0}, refuted={"delayed": 1})
+        open_ = replace(lost, network="b", refuted={"delayed": 3})
+        unread = Row("c", error="c: is empty")
+        assert headline(Survey((lost, lost), ("delayed",)), rb.Gate()).startswith("None of 2 networks survive")
+        assert headline(Survey((lost, open_), ("delayed",)), rb.Gate()).startswith("Of 2 networks none was shown to su")
+        one = headline(Survey((open_, unread), ("delayed",), missing=("d", "e")), rb.Gate())
+        assert one.startswith("Whether the one network that was read survives 1 malicious node")
+        assert one.endswith(" 1 could not be read. 2 were not reached.")
+
     def test_all_pass(self) -> None:
         graphs = {"a": nx.complete_graph(7), "b": nx.complete_graph(8)}
         text = Tags(rb.report(graphs, gate=rb.Gate(r=3), models=["malicious"], pictures=False).html).text
@@ -131,7 +142,9 @@ class TestWords:
                 "delayed and malicious.",
             ),
             (["passed", "refuted"], [], "1 of 2 networks is 2-robust and survives"),
-            (["refuted", "error", "error"], [], "None of 3 networks are"),
+            (["refuted", "error", "error"], [], "Of 3 networks none was shown to be 2-robust and survive"),
+            (["refuted", "undecided"], [], "Of 2 networks none was shown to be 2-robust and survive 1 malicious"),
+            (["refuted", "refuted"], [], "None of 2 networks are 2-robust and survive 1 malicious"),
             (["passed", "missing"], [], "; 1 was not reached: nothing is claimed about it."),
             (["missing", "missing"], [], "survive 1 malicious node under every threat model; 2 were not reached: "),
             (["refuted", "error", "error"], [], "; 1 fails, with a counterexample; 2 could not be read."),

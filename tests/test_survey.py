@@ -122,6 +122,15 @@ def test_a_file_that_cannot_be_read_has_a_row_and_holds_nobody_up(folder: Path) 
     assert rows["bad.json"]["gate"] == "error"
     assert "bad.json" in rows["bad.json"]["error"]
     assert rows["net2.json"]["gate"] == "passed"
+    (folder / "cut.g6.gz").write_bytes(b"\x1f\x8b")
+    (folder / "empty.s6").write_bytes(b"")
+    many = run(folder, "-r", 1, "-o", folder.parent / "rows.csv")
+    assert many.exit_code == 3
+    assert many.stderr.count("warning: ") == 1 + 3  # a file is passed over, and three cannot be read
+    assert f"warning: {folder / 'empty.s6'}: is empty" in many.stderr
+    for k in range(2):
+        (folder / f"gone{k}.json").write_text("", encoding="utf-8")
+    assert "2 more could not be read" in run(folder, "-r", 1, "-o", folder.parent / "rows.csv").stderr
     assert run("gone.json").exit_code == 3
     assert run(folder / "deep" / "*.gml").exit_code == 3
     assert run().exit_code == 2

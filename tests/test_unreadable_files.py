@@ -87,7 +87,7 @@ class TestBadNodeLinkJson:
 
     def test_bytes_that_are_no_text(self) -> None:
         assert "line 2: byte 0xff is not UTF-8" in refusal(b'{"nodes":\n \xff')
-        assert "is not UTF-8" in refusal(gzip.compress(b"{}"))
+        assert "is not UTF-8 text: save the file as UTF-8" in refusal(gzip.compress(b"{}"))
 
     def test_a_byte_order_mark_is_no_error(self) -> None:
         assert decode_topology(b"\xef\xbb\xbf" + encode_topology(nx.path_graph(2))).n == 2

@@ -256,7 +256,10 @@ def names_of_graphs(source: str | os.PathLike[str]) -> list[str]:
     path = os.fspath(source)
     if format_suffix(path) not in _MANY or not os.path.isfile(path):
         return [path]
-    count = len(graph6.lines_of(read_bytes(path)))
+    try:
+        count = len(graph6.lines_of(read_bytes(path)))
+    except UnreadableTopology:  # whoever reads the graph itself is told why
+        return [path]
     return [path] if count < 2 else [f"{path}#{k}" for k in range(1, count + 1)]
 
 
@@ -276,7 +279,9 @@ def read_bytes(source: str, stdin: BinaryIO | None = None) -> bytes:
     if source == "-":
         if stdin is None and sys.stdin is None:  # as after `<&-` in a shell
             raise UnreadableTopology("standard input: is closed")
-        return _unpacked(_read_limited(stdin or sys.stdin.buffer, "standard input"), "standard input")
+        return _not_empty(
+            _unpacked(_read_limited(stdin or sys.stdin.buffer, "standard input"), "standard input"), source
+        )
     try:
         mode = os.stat(source).st_mode
         if stat.S_ISDIR(mode):
@@ -294,7 +299,15 @@ def read_bytes(source: str, stdin: BinaryIO | None = None) -> bytes:
             raise
         reason = problem.strerror if isinstance(problem, OSError) and problem.strerror else str(problem)
         raise UnreadableTopology(f"{one_line(source)}: cannot be read: {one_line(reason)}") from None
-    return _unpacked(data, source) if source.lower().endswith(".gz") else data
+    return _not_empty(_unpacked(data, source) if source.lower().endswith(".gz") else data, source)
+
+
+def _not_empty(data: bytes, source: str) -> bytes:
+    """Return what a source holds; nothing at all is no network in any format, and no parser says so as plainly."""
+    if not data or data.isspace():
+        name = "standard input: nothing came" if source == "-" else f"{one_line(source)}: is empty"
+        raise UnreadableTopology(name)
+    return data
 
 
 def _meant(path: str) -> str:

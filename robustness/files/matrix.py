@@ -36,6 +36,12 @@ __all__ = [
 
 _TRUTH = {"true": True, "false": False}
 
+#: What is taken for granted of a matrix without a single 0.
+_COMPLETE = (
+    "no entry beside the diagonal is 0, so everybody is linked with everybody; "
+    "of distances or weights write 1 for a link and 0 for none"
+)
+
 
 def matrix_of_rows(rows: Rows, options: ReadingOptions, *, in_text: bool, is_asked: bool) -> Digraph | None:
     """Return the graph of a matrix with or without labels, or None when the rows are no matrix.
@@ -150,8 +156,9 @@ def links_in(
 ) -> tuple[npt.NDArray[np.bool_], list[str]]:
     """Return where a square matrix of numbers has links, and what was taken for granted.
 
-    Nonzero entries are links. A Laplacian has them where it is negative. In a matrix of costs, where every entry beside
-    the diagonal is positive but for one mark (infinity, not a number, or -1), the mark is no link.
+    Nonzero entries are links, with a word where all are and their numbers differ. A Laplacian has them where it is
+    negative. In a matrix of costs, where every entry beside the diagonal is positive but for one mark (infinity, not a
+    number, or -1), the mark is no link.
 
     Raises
     ------
@@ -161,7 +168,9 @@ def links_in(
     off = ~np.eye(len(values), dtype=bool)
     odd = off & (~np.isfinite(values) | (values < 0))
     if not odd.any() and np.isfinite(values).all():
-        return values != 0, []
+        beside = values[off]
+        is_measured = beside.all() and (beside != beside[:1]).any()  # more likely distances than a complete network
+        return values != 0, [_COMPLETE] if is_measured else []
     is_laplacian = np.isfinite(values).all() and (values[off] <= 0).all() and (values.diagonal() >= 0).all()
     if is_laplacian and np.allclose(values.sum(axis=1), 0):
         return odd, ["a Laplacian matrix, whose negative entries are the links"]
@@ -190,9 +199,7 @@ def decode_npy(data: bytes, options: ReadingOptions) -> Digraph:
             f"the array needs {counted(math.prod(shape) * dtype.itemsize, 'byte')}, and {len(data) - start} are there"
         )
     weights = np.load(io.BytesIO(data), allow_pickle=False)
-    if dtype.kind != "f":
-        return graph_of_pattern(weights != 0, options) if dtype.kind != "i" else _graph_of_numbers(weights, options)
-    return _graph_of_numbers(weights, options)
+    return graph_of_pattern(weights, options) if dtype.kind == "b" else _graph_of_numbers(weights, options)
 
 
 def _graph_of_numbers(weights: npt.NDArray[Any], options: ReadingOptions) -> Digraph:

@@ -101,7 +101,7 @@ def graph_of_matrix(matrix: Any, options: ReadingOptions, labels: Any = None) ->
         array = np.asarray(matrix)
         if array.dtype.kind not in "biuf":
             raise UnreadableTopology(f"an adjacency matrix holds numbers or truth values, not {array.dtype}")
-        if array.dtype.kind in "bu":
+        if array.dtype.kind == "b":
             return graph_of_pattern(array != 0, options, labels)
         pattern, notes = links_in(
             array.astype(np.float64), lambda row, column: f"row {row}, column {column}: {array[row, column]}"

@@ -33,7 +33,9 @@ def decode_utf8(data: bytes) -> str:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as problem:
         line = data.count(b"\n", 0, problem.start) + 1
-        raise UnreadableTopology(f"line {line}: byte {data[problem.start]:#04x} is not UTF-8 text") from None
+        raise UnreadableTopology(
+            f"line {line}: byte {data[problem.start]:#04x} is not UTF-8 text: save the file as UTF-8"
+        ) from None
 
 
 def warn_lossy(message: str, hint: str = "") -> None:

@@ -60,5 +60,5 @@ def _same_last_part(wanted: str, names: Sequence[str]) -> list[str]:
 def _folder() -> Path:
     spec = importlib.util.find_spec("topohub")
     if spec is None or spec.origin is None:
-        raise MissingExtra("a topohub: network needs the package topohub: install it with: pip install topohub")
+        raise MissingExtra("a topohub: network needs the package topohub: pip install 'graph-robustness[topologies]'")
     return Path(spec.origin).parent / "data"

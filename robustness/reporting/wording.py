@@ -37,6 +37,8 @@ def headline(survey: Survey, gate: Gate) -> str:
         "error": ("could not be read", "could not be read"),
     }
     rest = "; ".join(f"{standing[name]} {tail[standing[name] != 1]}" for name, tail in tails.items() if standing[name])
+    if not passed and standing["refuted"] < total:  # "none of them is" would claim something of the others, too
+        return f"Of {counted(total, 'network')} none was shown to {_wish(gate, survey.models, 'be')}; {rest}."
     return f"{passed or 'None'} of {counted(total, 'network')} {wanted}; {rest}."
 
 
@@ -80,25 +82,31 @@ def _without_gate(survey: Survey, total: int) -> str:
     read = [row for row in survey.rows if not row.error]
     if not read:
         return f"Nothing is known about {counted(total, 'network')}: none was reached, or could be read."
-    rest = "" if len(read) == total else f" {total - len(read)} could not be read or were not reached."
+    unread, missing = len(survey.rows) - len(read), len(survey.missing)
+    rest = f" {unread} could not be read." if unread else ""
+    rest += f" {counted(missing, 'was', 'were')} not reached." if missing else ""
     if not survey.models:
         told = counted(len(read), "network was", "networks were")
         return f"{told} looked at; nothing was required of {'it' if len(read) == 1 else 'them'}.{rest}"
     standing = Counter(map(_survives_one, read))
     under = in_models(survey.models)
-    if total == 1 and len(read) == 1:
+    if len(read) == 1:
+        which = "the network" if total == 1 else "the one network that was read"
         verdicts = {
-            True: f"The network survives 1 malicious node under {under}.",
-            False: f"The network does not survive 1 malicious node under {under}.",
-            None: f"Whether the network survives 1 malicious node under {under} was not decided within the limit.",
+            True: f"T{which[1:]} survives 1 malicious node under {under}.",
+            False: f"T{which[1:]} does not survive 1 malicious node under {under}.",
+            None: f"Whether {which} survives 1 malicious node under {under} was not decided within the limit.",
         }
-        return f"{verdicts[_survives_one(read[0])]} Nothing was required of it."
+        return f"{verdicts[_survives_one(read[0])]} Nothing was required of it.{rest}"
     survivors, unknown = standing[True], standing[None]
     survive = plural(survivors, "survives", "survive")
     open_ = f"; {counted(unknown, 'was', 'were')} not decided within the limit" if unknown else ""
+    if unknown and not survivors:
+        shown = f"Of {counted(len(read), 'network')} none was shown to survive 1 malicious node under {under}{open_}."
+        return f"{shown} Nothing was required of them.{rest}"
     return (
         f"{survivors or 'None'} of {counted(len(read), 'network')} {survive} 1 malicious node under {under}{open_}. "
-        f"Nothing was required of {'it' if len(read) == 1 else 'them'}.{rest}"
+        f"Nothing was required of them.{rest}"
     )
 
 

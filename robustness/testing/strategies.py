@@ -23,7 +23,7 @@ from robustness.spelled import counted
 try:
     from hypothesis import strategies as st
 except ImportError as missing:  # pragma: no cover - the tests of this module need it
-    raise MissingExtra("robustness.testing needs hypothesis: pip install graph-robustness[testing]") from missing
+    raise MissingExtra("robustness.testing needs hypothesis: pip install 'graph-robustness[testing]'") from missing
 
 __all__ = [
     "digraphs",

@@ -63,8 +63,29 @@ class TestGraph:
             build("erdos-renyi", n=5, p=0.5, directed=True, seed=3)
         )
 
+    def test_one_link_is_one(self) -> None:
+        assert run("build", "path", "--n", "2").stderr.startswith("path: 2 nodes, 1 edge\n")
+
+    @pytest.mark.parametrize(
+        ("name", "told"),
+        [
+            ("whel", "No such family 'whel': did you mean wheel?"),
+            ("xyzzy", "No such family 'xyzzy': robustness build --list"),
+        ],
+    )
+    def test_a_mistyped_family_is_called_one(self, name: str, told: str) -> None:
+        outcome = run("build", name)
+        assert outcome.exit_code == 2
+        assert told in outcome.stderr
+
 
 class TestList:
+    def test_is_made_of_sentences_and_of_options_as_they_are_typed(self) -> None:
+        listed = run("build", "--list").stdout.splitlines()
+        assert [line for line in listed if line != line.rstrip()] == []
+        assert [line for line in listed if ". c" in line] == []
+        assert any(line.endswith("--n N --r N [--seed N]") for line in listed)
+
     def test_names_every_family_with_its_value(self) -> None:
         listed = run("build", "--list")
         assert listed.exit_code == 0

@@ -226,7 +226,9 @@ def test_a_pipe_that_nobody_writes_to_is_not_waited_for(tmp_path: Path) -> None:
         assert (outcome.exit_code, "pipe it into - instead" in outcome.stderr) == (3, True)
 
 
-@pytest.mark.parametrize("arguments", [["check", "-"], ["joint", "-", "-r", "2"], ["tolerance", "-"]])
+@pytest.mark.parametrize(
+    "arguments", [["check", "-"], ["joint", "-", "-r", "2"], ["tolerance", "-"], ["survey", "--from", "-"]]
+)
 def test_a_closed_input_is_bad_input(arguments: list[str]) -> None:
     line = " ".join([sys.executable, "-m", "cli", *arguments, "<&-"])
     done = subprocess.run(["sh", "-c", line], cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
@@ -319,6 +321,19 @@ def test_with_json_an_error_is_a_document_on_standard_output(asked: list[str], c
     assert document["error"] in outcome.stderr
     without = [word for word in asked if word != "--json"]
     assert CliRunner().invoke(robustness, without).stdout == ""
+
+
+@pytest.mark.parametrize("arguments", [["simulate", SQUARE], ["simulate", "--experiment", "setting-1"]])
+def test_a_limit_before_any_answer_is_undecided_and_no_error(arguments: list[str]) -> None:
+    """The first word, and the verdict in JSON, are as where a limit leaves an answer."""
+    asked = [*arguments, "--timeout", "1e-9"]
+    outcome = CliRunner().invoke(robustness, asked)
+    assert (outcome.exit_code, outcome.stdout) == (30, "")
+    assert outcome.stderr.splitlines()[-1].startswith("undecided: the time limit came")
+    assert "error: " not in outcome.stderr
+    document = json.loads(CliRunner().invoke(robustness, [*asked, "--json"]).stdout)
+    assert (document["exit_code"], document["verdict"]) == (30, "undecided")
+    assert document["error"].startswith("the time limit came")
 
 
 @pytest.mark.parametrize("asked", [["check", SQUARE], ["tolerance", SQUARE], ["mend", SQUARE, "-r", "2"]])

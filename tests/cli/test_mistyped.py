@@ -28,7 +28,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     [
         ("chek square.json", 2, "did you mean check?"),
         ("build plattoon", 2, "did you mean platoon"),
-        ("build zzzz", 2, "No such command 'zzzz'."),
+        ("build zzzz", 2, "No such family 'zzzz': robustness build --list"),
         ("check sqaure.json", 3, "cannot be read: No such file or directory: did you mean square.json?"),
         ("check square.jso", 3, "cannot be read: No such file or directory: did you mean square.json?"),
         ("check nowhere/square.json", 3, "nowhere/square.json: cannot be read: No such file or directory"),

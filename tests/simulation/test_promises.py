@@ -132,6 +132,22 @@ class TestValidation:
         assert seen[-1] == (63, 63)
         assert report.runs == 63 * 6
 
+    @pytest.mark.parametrize(("graph", "s"), [(nx.path_graph(3), 1), (nx.wheel_graph(5), 5)])
+    def test_it_is_played_only_where_the_theorems_apply(self, graph: nx.Graph, s: int) -> None:
+        """With f = 0 the weights add up to 1: a warning that nothing is promised would be an error here."""
+        r = 1 if s == 1 else 2
+        report = validate_certificate(graph, rb.check_rs_robustness(graph, r, s), steps=300, starts_per_set=1)
+        assert report.verdict == "confirmed"
+
+    def test_a_sample_is_called_one(self) -> None:
+        graph = nx.complete_graph(5)
+        whole, some = (
+            validate_certificate(graph, claimed(2, 2), f=1, steps=200, starts_per_set=1, most_sets=most)
+            for most in (6, 3)
+        )
+        assert (whole.exhaustive, "every set of malicious nodes" in whole.reason) == (True, True)
+        assert (some.exhaustive, "a sample of the sets" in some.reason) == (False, True)
+
     def test_a_false_one_meets_a_counterexample_that_can_be_replayed(self, tmp_path: Path) -> None:
         """A cycle called (2,2)-robust."""
         path = tmp_path / "new" / "run.json"

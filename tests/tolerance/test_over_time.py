@@ -251,6 +251,9 @@ class TestCommand:
         assert code == ExitCode.DONE
         assert [model["model"] for model in json.loads(text)["models"]] == ["delayed", "delayed-local"]
 
+    def test_arcs_are_said_to_be_those_of_the_union(self) -> None:
+        assert "4 nodes, 4 arcs in the union of 2 steps, directed" in self.run("--tau", "2", "--delay", "1")[1]
+
     @pytest.mark.parametrize(("f", "code"), [(0, ExitCode.DONE), (1, ExitCode.REFUTED)])
     def test_gate(self, f: int, code: ExitCode) -> None:
         assert self.run("--tau", "2", "--delay", "1", "--require", str(f))[0] == code
