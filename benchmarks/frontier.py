@@ -168,10 +168,14 @@ def picture(by_name: dict[str, list[Outcome]], path: str) -> None:
             else:
                 axes.plot(each.left[::2], (place, place), color="C1", linewidth=1, alpha=0.5)
                 axes.plot(each.left[1], place, "o", color="C1", mfc="none")
+    axes.set(xscale="log")
+    right = axes.get_xlim()[1]
     for seconds, words in ((60, "1 min"), (3600, "1 h"), (86_400, "1 day"), (31_557_600, "1 year")):
+        if seconds > right:
+            break
         axes.axvline(seconds, color="0.8", linewidth=0.8, zorder=0)
         axes.text(seconds, -0.7, words, color="0.4", ha="center", va="bottom", fontsize=8)
-    axes.set(xscale="log", yticks=range(len(by_name)), ylim=(len(by_name) - 0.5, -0.6))
+    axes.set(yticks=range(len(by_name)), ylim=(len(by_name) - 0.5, -0.6))
     axes.set_xlabel("seconds of one core: decided (filled), or estimated with its spread (hollow)")
     axes.set_yticklabels(list(by_name))
     save_figure(figure, path)
