@@ -40,7 +40,7 @@ def networks() -> dict[str, nx.Graph]:
     return {
         "wheel" + NASTY: wheel,
         "complete": nx.complete_graph(7),
-        "path": nx.path_graph(7),
+        "path": nx.path_graph(8),
         "one": nx.path_graph(1),
     }
 
