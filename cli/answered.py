@@ -60,11 +60,18 @@ class Answered:
         """Return the answer with the facts of both networks, as far as the limits allow."""
         if self.mended is None:
             return self
-        before = facts_of(self.mended.before, limits)
+        one_way = self._is_one_way
+        before = facts_of(self.mended.before, limits, one_way=one_way)
         if self.mended.cost is None:
             return replace(self, before=before)
         is_same = self.mended.graph == self.mended.before
-        return replace(self, before=before, after=before if is_same else facts_of(self.mended.graph, limits))
+        after = before if is_same else facts_of(self.mended.graph, limits, one_way=one_way)
+        return replace(self, before=before, after=after)
+
+    @property
+    def _is_one_way(self) -> bool:
+        """Whether the network has, or gets, links that run one way only: then arcs are counted."""
+        return self.mended is not None and (self.mended.before.directed or self.mended.graph.directed)
 
     @property
     def exit_code(self) -> ExitCode:
@@ -98,7 +105,7 @@ class Answered:
             told.append(f"stopped: {self.mended.reason}")
         for name, facts in (("before", self.before), ("after", self.after)):
             if facts is not None:
-                told.append(line_of(name, facts, dict.fromkeys(models)))
+                told.append(line_of(name, facts, dict.fromkeys(models), one_way=self._is_one_way))
         return told
 
     def _headline(self) -> str:
@@ -181,9 +188,16 @@ def _keep(
     from robustness.files import write_topology
 
     if kept.certificate is not None:
-        from robustness.mending import certify_mending
+        from robustness.mending.certification import certify_mending, least_claimed
 
-        _write(console, kept.certificate, certify_mending(found, **query.effort()))
+        data = certify_mending(found, **query.effort())
+        _write(console, kept.certificate, data)
+        if data is not None and found.problem is not None:
+            least = least_claimed(data)
+            if least is not None and found.problem.least is not None and least < found.problem.least:
+                console.talk(
+                    f"its violations give a bound of {found.problem.actions.price(least)} only, not {found.lower_bound}"
+                )
     if found.cost is None:
         is_drawn = kept.picture is not None and found.witness is not None and bool(found.witness.S1)
         if kept.picture is not None and is_drawn:

@@ -21,9 +21,10 @@ _FEW_NODES = 20
 _STEPS = 100_000_000
 
 
-def facts_of(graph: Digraph, limits: Limits) -> dict[str, Any]:
+def facts_of(graph: Digraph, limits: Limits, *, one_way: bool) -> dict[str, Any]:
     """Return the number of links, the bounds proven on r* and s, and what each threat model guarantees and refutes.
 
+    Links are counted as arcs where some of them run ``one_way``, before as after.
     ``r`` and ``s`` are None where their bounds differ. Networks of more than 20 nodes are decided within ``limits`` and
     budgets of steps; past the deadline nothing but their links is told.
     """
@@ -31,7 +32,7 @@ def facts_of(graph: Digraph, limits: Limits) -> dict[str, Any]:
     from robustness.limits import UNBOUNDED
     from robustness.threat_models.front import tolerance_within
 
-    links = graph.arc_count if graph.directed else graph.arc_count // 2
+    links = graph.arc_count if one_way else graph.arc_count // 2
     facts: dict[str, Any] = {"links": links} | dict.fromkeys(("r", "s", "r_bounds", "s_bounds", "tolerance"))
     if graph.n > _FEW_NODES and limits.expired():
         return facts
@@ -50,9 +51,9 @@ def facts_of(graph: Digraph, limits: Limits) -> dict[str, Any]:
     return facts
 
 
-def line_of(name: str, facts: dict[str, Any], models: Iterable[str]) -> str:
+def line_of(name: str, facts: dict[str, Any], models: Iterable[str], *, one_way: bool) -> str:
     """Return these facts as one line, with what is survived under these threat models."""
-    told = [counted(facts["links"], "link")]
+    told = [counted(facts["links"], "arc" if one_way else "link")]
     for value, bounds in (("r*", facts["r_bounds"]), ("s", facts["s_bounds"])):
         if bounds is not None:
             told.append(f"{value} = {_range(*bounds)}")

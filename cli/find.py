@@ -77,10 +77,13 @@ def command(
     Up to 7 nodes (digraphs: 5) all graphs are tried; beyond, a constraint solver proposes graphs and learns from
     what breaks them. Exit code 0 found (the graph goes to standard output or FILE), 10 none exists, 30 undecided.
     """
+    from robustness.files.front import require_written_format
     from robustness.files.writing import require_different_files
     from robustness.graph_search import FindResult, FindVerdict, find_graph
 
     require_different_files([], [output])
+    if output is not None:
+        require_written_format(output)
     started, latest = time.monotonic(), [FindResult(FindVerdict.UNDECIDED)]
     with ProgressLine(console) as line:
 

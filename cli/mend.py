@@ -74,7 +74,6 @@ def command(
     (r,s)-robustness that the budget buys, or with --model the most malicious nodes that are survived. Ctrl-C prints the
     best links so far, checked, and the lower bound.
     """
-    from robustness.files.writing import require_different_files
     from robustness.mending import BudgetResult, MendResult, best_within, mend
     from robustness.mending.front import links_within
 
@@ -82,7 +81,9 @@ def command(
         raise click.UsageError("give one of --candidates and --range.")
     if cost not in ("one", "distance") and candidates is None:
         raise click.UsageError(f"--cost {cost} is an attribute of the links in a file: give it with --candidates FILE.")
-    require_different_files([source, candidates, forbid, mandatory], kept.paths)
+    if reach is not None:
+        links_within({}, reach)  # refuses what is no range, before files are read
+    kept.require_writable([source, candidates, forbid, mandatory])
     graph = load_graph(source)
     places = _positions(source, graph) if reach is not None or cost == "distance" else {}
     wanted = links_in(candidates, graph) if reach is None else links_within(places, reach)

@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .choices import THREAT_MODEL_NAMES
+from .options import asked_reading
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable
+    from collections.abc import Hashable, Iterable
 
     from robustness.digraph import Digraph
     from robustness.mending import Goal
@@ -60,7 +61,13 @@ _KEEP_OPTIONS = (
         metavar="FILE",
         help="Write a certificate that the result is as asked.",
     ),
-    click.option("--plot", "picture", type=FILE, metavar="FILE", help="Draw it, new links thick: .svg, .png or .pdf."),
+    click.option(
+        "--plot",
+        "picture",
+        type=FILE,
+        metavar="FILE",
+        help="Draw it, new links thick and dropped ones dashed: .svg, .png or .pdf.",
+    ),
 )
 
 
@@ -73,10 +80,18 @@ class Kept:
     goal_certificate: Path | None
     picture: Path | None
 
-    @property
-    def paths(self) -> list[Path | None]:
-        """All paths, None for what is not written."""
-        return [self.output, self.certificate, self.goal_certificate, self.picture]
+    def require_writable(self, inputs: Iterable[str | Path | None]) -> None:
+        """Guarantees that no output is an input, and that each can be written as its suffix says, before any work."""
+        from robustness.files.front import require_written_format
+        from robustness.files.writing import require_different_files
+
+        require_different_files(inputs, [self.output, self.certificate, self.goal_certificate, self.picture])
+        if self.output is not None:
+            require_written_format(self.output)
+        if self.picture is not None:
+            from robustness.figures.saving import picture_format
+
+            picture_format(self.picture)
 
 
 def goal_and_files(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -123,13 +138,28 @@ def goals_from(r: int | None, s: int | None, survive: int | None, model: str | N
     return (Goal(r, s or 1, survive, model or "malicious"),)
 
 
-def links_in(path: Path | None, graph: Digraph) -> list[tuple[Hashable, Hashable]] | None:
-    """Return the links that a file lists: the links of a network in any format, whose nodes are those of GRAPH."""
+def links_in(path: Path | None, graph: Digraph, *, are_there: bool = False) -> list[tuple[Hashable, Hashable]] | None:
+    """Return the links that a file lists: the links of a network in any format, whose nodes are those of GRAPH.
+
+    ``are_there``: links that GRAPH does not have, neither way, are refused.
+    """
     if path is None:
         return None
     listed, named = _listed(path, graph)
-    labels = listed.labels
-    return list(dict.fromkeys((named[labels[u]], named[labels[v]]) for u, v in listed.arcs()))
+    links = dict.fromkeys((named[listed.labels[u]], named[listed.labels[v]]) for u, v in listed.arcs())
+    if are_there:
+        own = {frozenset((graph.labels[u], graph.labels[v])) for u, v in graph.arcs()}
+        _refuse_others(path, graph, (link for link in links if frozenset(link) not in own))
+    return list(links)
+
+
+def _refuse_others(path: Path, graph: Digraph, missing: Iterable[tuple[Hashable, Hashable]]) -> None:
+    from robustness.errors import UnreadableTopology
+    from robustness.spelled import Spelling
+
+    spelled = Spelling(graph.labels)
+    for u, v in missing:
+        raise UnreadableTopology(f"{path}: the link {spelled(u)} -- {spelled(v)} is not in the network: leave it out")
 
 
 def costs_in(path: Path, graph: Digraph, attribute: str) -> dict[tuple[Hashable, Hashable], Any]:
@@ -140,7 +170,9 @@ def costs_in(path: Path, graph: Digraph, attribute: str) -> dict[tuple[Hashable,
 
 def link_costs(graph: Digraph, attribute: str, source: str) -> dict[tuple[Hashable, Hashable], Any]:
     """Return this attribute of the links of a network that has been read, where they have it."""
-    from robustness.errors import UnreadableTopology
+    from robustness.errors import InvalidParameter, UnreadableTopology
+    from robustness.mending.actions import cost_of
+    from robustness.spelled import Spelling
 
     costs: dict[tuple[Hashable, Hashable], Any] = {
         link: said[attribute] for link, said in graph.link_attributes.items() if attribute in said
@@ -149,6 +181,12 @@ def link_costs(graph: Digraph, attribute: str, source: str) -> dict[tuple[Hashab
         have = sorted({name for said in graph.link_attributes.values() for name in said})
         known = f"links here have: {', '.join(have[:12])}" if have else "its links have none"
         raise UnreadableTopology(f"{source}: no link has an attribute {attribute!r}; {known}")
+    spelled = Spelling(graph.labels)
+    for (u, v), cost in costs.items():
+        try:
+            cost_of(cost, f"{spelled(u)} -- {spelled(v)}")
+        except InvalidParameter as problem:
+            raise UnreadableTopology(f"{source}: {problem}") from None
     return costs
 
 
@@ -169,7 +207,7 @@ def caps_in(text: str, graph: Digraph) -> int | dict[Hashable, int]:
             raise ValueError
     except OSError as problem:
         raise click.UsageError(
-            f"--max-in-degree is a number, or a file that says it of each node: {problem}."
+            f"--max-in-degree is a number, or a file that says it of each node; {text}: {problem.strerror}."
         ) from None
     except (ValueError, TypeError, RecursionError):
         raise UnreadableTopology(
@@ -198,10 +236,14 @@ def _by_text(graph: Digraph) -> dict[str, Hashable]:
 
 def _listed(path: Path, graph: Digraph) -> tuple[Digraph, dict[Hashable, Hashable]]:
     """Return the network that a file holds, and the labels of ``graph`` that its labels mean."""
-    from robustness.errors import UnreadableTopology
+    from robustness.errors import AmbiguousTopology, UnreadableTopology
     from robustness.files import read_topology
 
-    listed = read_topology(path)
+    directed = asked_reading().directed
+    try:
+        listed = read_topology(path, directed=directed)
+    except AmbiguousTopology:  # of links, since it is asked for them
+        listed = read_topology(path, format="edge-list", directed=directed)
     by_name = _by_text(graph)
     unknown = [label for label in listed.labels if str(label) not in by_name]
     if unknown:

@@ -44,12 +44,11 @@ def command(
     The goal is -r R [-s S], or --survive F [--model M], or both. Exit code 0: so many, and no more. 30: so many at
     least. 10: the network does not reach the goal as it is.
     """
-    from robustness.files.writing import require_different_files
     from robustness.mending import MendResult, thin
 
-    require_different_files([source, keep], kept.paths)
+    kept.require_writable([source, keep])
     graph = load_graph(source)
-    stay = links_in(keep, graph) or []
+    stay = links_in(keep, graph, are_there=True) or []
     price = None if cost == "one" else link_costs(graph, cost, source)
 
     def work(line: Any, improved: Any) -> MendResult:

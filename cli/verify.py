@@ -196,7 +196,7 @@ def _tell_confirmation(
     """Print what the kernel proved and what the solver says, and end with the exit code."""
     codes = {"confirmed": ExitCode.DONE, "refuted": ExitCode.REFUTED, "undecided": ExitCode.UNDECIDED}
     if as_json:
-        said = {"bound": confirmation.verdict.value, "solver": confirmation.solver}
+        said = {"bound": confirmation.verdict.value, "solver": confirmation.solver, "reason": confirmation.reason}
         console.document(SCHEMA, _document(confirmation.claim) | {"as_asked": True, "comparison": how} | said)
     else:
         console.result(f"verified: {confirmation.claim}; {how}\n{confirmation}")

@@ -47,7 +47,8 @@ class Digraph(Told):
         ``(u, v)``: v hears u. Repeated arcs count once (``N_i`` is a set). Self-loops are dropped with a
         :class:`GraphWarning`: a node of S is never outside S, so no definition sees them.
     directed : bool
-        Whether the source was a directed graph; only shown to the user, never used in mathematics.
+        Whether the source was a directed graph; only shown to the user, never used in mathematics. An arc without its
+        reverse makes the graph directed, whatever is said here.
 
     Raises
     ------
@@ -65,7 +66,7 @@ class Digraph(Told):
     """
 
     labels: tuple[Label, ...]
-    directed: bool
+    _said_directed: bool
     #: What a reader took for granted, in one line; empty for a graph that came from no file.
     read_as: str
     #: What a file says of its nodes beside their labels (``pos``, ``label``, ``id``), by label; no mathematics sees it.
@@ -91,7 +92,7 @@ class Digraph(Told):
         except KeyError as unknown:
             raise InvalidGraph(f"an arc joins two nodes of the graph, but {unknown} is none: add the node") from None
         self._build(given, ends)
-        self.directed = directed
+        self._said_directed = directed
         self.read_as = read_as
         self.node_attributes = {plain_label(node): values for node, values in node_attributes.items()}
 
@@ -108,7 +109,7 @@ class Digraph(Told):
         """Return the digraph whose arcs join the labels at these places, shape ``(m, 2)``: without a loop over arcs."""
         graph = cls.__new__(cls)
         graph._build(labels, ends)
-        graph.directed = directed
+        graph._said_directed = directed
         graph.read_as = read_as
         graph.node_attributes = {plain_label(node): values for node, values in node_attributes.items()}
         return graph
@@ -174,6 +175,11 @@ class Digraph(Told):
             label: self.node_attributes[label] for label in kept if label in self.node_attributes
         }
         return Digraph(kept, arcs, directed=self.directed, read_as=self.read_as, node_attributes=data)
+
+    @cached_property
+    def directed(self) -> bool:
+        """Whether the source was a directed graph, or some arc has no reverse: never an undirected network that is."""
+        return self._said_directed or not self.is_symmetric
 
     @property
     def n(self) -> int:

@@ -6,6 +6,7 @@
     ├── InvalidGraph (also ValueError)       the input is not a graph the definitions speak about
     ├── InvalidParameter (also ValueError)   r, s, f, a limit or an option is out of range
     ├── UnreadableTopology (also ValueError) a file or a name does not yield a graph
+    │   ├── AmbiguousTopology                a text may be a matrix, and may be a list of links
     │   └── MissingTopology (also FileNotFoundError) there is no file of this name
     ├── MissingExtra (also ImportError)      an optional package is not installed
     ├── Undecided                            a limit stopped the search; nothing is claimed
@@ -21,6 +22,7 @@ from collections.abc import Mapping
 from typing import Any
 
 __all__ = [
+    "AmbiguousTopology",
     "InternalError",
     "InvalidGraph",
     "InvalidParameter",
@@ -46,6 +48,10 @@ class InvalidParameter(RobustnessError, ValueError):
 
 class UnreadableTopology(RobustnessError, ValueError):
     """A file, a stream or a name does not yield a graph."""
+
+
+class AmbiguousTopology(UnreadableTopology):
+    """A text may be a matrix, and may be a list of links."""
 
 
 class MissingTopology(UnreadableTopology, FileNotFoundError):

@@ -323,9 +323,10 @@ def _changed(marks: Marks) -> list[frozenset[tuple[int, int]]]:
 
 
 def _faint_one_way(picture: nx.DiGraph, marks: Marks) -> list[tuple[int, int]]:
-    """Return the arcs that nothing marks and that none runs against."""
-    strong = _strong(marks)
-    return [(u, v) for u, v in picture.edges if not picture.has_edge(v, u) and (u, v) not in strong]
+    """Return the arcs that nothing marks and that none ran against before links were added."""
+    strong, new = _strong(marks), marks.added
+    alone = ((u, v) for u, v in picture.edges if not picture.has_edge(v, u) or (v, u) in new)
+    return [arc for arc in alone if arc not in strong]
 
 
 def _both_and_one_way(arcs: frozenset[tuple[int, int]]) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:

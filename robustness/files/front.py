@@ -41,7 +41,7 @@ from types import MappingProxyType
 from typing import Any, BinaryIO
 
 from robustness.digraph import Digraph, GraphLike, as_digraph
-from robustness.errors import InvalidGraph, InvalidParameter, MissingTopology, UnreadableTopology
+from robustness.errors import AmbiguousTopology, InvalidGraph, InvalidParameter, MissingTopology, UnreadableTopology
 from robustness.files import (
     dot,
     gml,
@@ -334,6 +334,8 @@ def decode_topology(
             )
     try:
         return form.decode(data, options)
+    except AmbiguousTopology as problem:
+        raise AmbiguousTopology(f"{one_line(name)}: {one_line(str(problem))}") from None
     except (UnreadableTopology, InvalidGraph) as problem:
         raise UnreadableTopology(f"{one_line(name)}: {one_line(str(problem))}") from None
     except RecursionError:
@@ -388,22 +390,27 @@ def write_topology(graph: GraphLike, path: str | os.PathLike[str]) -> None:
     replace_file(target, gzip.compress(data, mtime=0) if target.lower().endswith(".gz") else data)
 
 
+def require_written_format(path: str | os.PathLike[str]) -> None:
+    """Guarantees that the suffix of a path names a format that :func:`write_topology` writes, before any work."""
+    target = os.fspath(path)
+    _encoder(format_suffix(target), target)
+
+
 def _encoder(suffix: str, name: str) -> Callable[[Digraph], bytes]:
-    form = _format_of(suffix, name)
+    form = _format_of(suffix, name, otherwise="")
     if form.encode is None:
         raise UnreadableTopology(f"{one_line(name)}: {form.name} is read and not written: write .json instead")
     return form.encode
 
 
-def _format_of(suffix: str, name: str) -> Format:
+def _format_of(suffix: str, name: str, otherwise: str = "; --format tells it otherwise") -> Format:
     try:
         return FORMATS[suffix.lower()]
     except KeyError:
         known = ", ".join(FORMATS)
         raise UnreadableTopology(
-            f"{one_line(name) or 'no name'}: the suffix tells the format and is one of {known}, not {suffix!r}; "
-            "--format "
-            "tells it otherwise"
+            f"{one_line(name) or 'no name'}: the suffix tells the format and is one of {known}, "
+            f"not {suffix!r}{otherwise}"
         ) from None
 
 

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from robustness.digraph import Digraph
-from robustness.errors import InvalidGraph, UnreadableTopology
+from robustness.errors import AmbiguousTopology, InvalidGraph, UnreadableTopology
 from robustness.files.found import Found, Node, ReadingOptions, graph_of
 from robustness.files.graph6 import warn_of_lost_labels
 from robustness.files.rows import Rows, is_number
@@ -58,7 +58,7 @@ def matrix_of_rows(rows: Rows, options: ReadingOptions, *, in_text: bool, is_ask
     Raises
     ------
     UnreadableTopology
-        When the rows may be a matrix and may be links, or a cell may be a link and may be none.
+        When the rows may be a matrix and may be links (AmbiguousTopology), or a cell may be a link and may be none.
     """
     cells, lines = _with_blanks_filled(rows.cells), rows.lines
     height, width = len(cells), len(cells[0])
@@ -82,7 +82,7 @@ def matrix_of_rows(rows: Rows, options: ReadingOptions, *, in_text: bool, is_ask
         raise UnreadableTopology(f"an adjacency matrix is square, not {len(block)} x {len(block[0])}")
     if labels is None and not is_asked and not _is_surely_a_matrix(block):
         what = "with weights " if width > 2 else ""
-        raise UnreadableTopology(
+        raise AmbiguousTopology(
             f"{height} rows of {width} numbers may be a matrix and may be {counted(height, 'link')} {what}"
             "between nodes that are numbers: say which with --format matrix or --format edge-list"
         )

@@ -12,7 +12,7 @@ from robustness.digraph import Digraph
 from robustness.errors import InvalidParameter
 from robustness.spelled import Spelling
 
-__all__ = ["Action", "Actions", "CostLike", "actions_for"]
+__all__ = ["Action", "Actions", "CostLike", "actions_for", "cost_of", "with_actions"]
 
 Link = tuple[Hashable, Hashable]
 CostLike = Mapping[Link, Any] | Callable[[Hashable, Hashable], Any] | None
@@ -113,6 +113,32 @@ def actions_for(
     return Actions(items, scale, wanted, most, uniform, one_way, _units(budget, scale))
 
 
+def with_actions(graph: Digraph, actions: Actions, chosen: Iterable[int]) -> Digraph:
+    """Return the network with the links of the chosen actions."""
+    labels = graph.labels
+    arcs = [*graph.arcs(), *(arc for a in sorted(chosen) for arc in actions.items[a].arcs)]
+    said: dict[Hashable, Mapping[str, object]] = dict(graph.node_attributes.items())
+    joined = ((labels[u], labels[v]) for u, v in arcs)
+    return Digraph(labels, joined, directed=graph.directed, node_attributes=said)
+
+
+def cost_of(value: object, link: str) -> Fraction:
+    """Return what a link costs as an exact number; ``link`` is its name.
+
+    Raises
+    ------
+    InvalidParameter
+        When the value is no finite number of at least 0.
+    """
+    try:
+        price = Fraction(str(value))
+    except (ValueError, ZeroDivisionError):
+        price = Fraction(-1)
+    if isinstance(value, bool) or price < 0:
+        raise InvalidParameter(f"a cost is a finite number of at least 0, not {value!r} of {link}")
+    return price
+
+
 def _most(graph: Digraph, max_in_degree: int | Mapping[Hashable, int]) -> tuple[int, ...]:
     """Return for every node how many in-neighbours it may gain."""
     caps: list[int] = [max(graph.n - 1, 0)] * graph.n
@@ -168,10 +194,4 @@ def _price(graph: Digraph, ends: tuple[int, int], cost: CostLike) -> Fraction:
         value = cost.get((u, v), cost.get((v, u)))
         if value is None:
             raise InvalidParameter(f"the link {_name(graph, ends)} has no cost: give one, or leave it out")
-    try:
-        price = Fraction(str(value))
-    except (ValueError, ZeroDivisionError):
-        price = Fraction(-1)
-    if isinstance(value, bool) or price < 0:
-        raise InvalidParameter(f"a cost is a finite number of at least 0, not {value!r} of {_name(graph, ends)}")
-    return price
+    return cost_of(value, _name(graph, ends))

@@ -46,13 +46,13 @@ class BudgetResult(Shown):
 
     def summary(self) -> str:
         """Return the answer in one sentence."""
-        bought = "nothing" if self.best is None else f"{self.best.goal}, for {self.best.cost}"
+        bought = "nothing" if self.best is None else f"{_as_noun(self.best)}, for {self.best.cost}"
         if self.missed is None:
             more = "there is nothing more to reach" if self.is_exact else "whether it buys more was not decided"
             return f"the budget buys {bought}; {more}"
         if self.is_exact:
-            return f"the budget buys {bought}; it does not buy {self.missed.goal}"
-        return f"the budget buys {bought}; whether it buys {self.missed.goal} was not decided within the limit"
+            return f"the budget buys {bought}; it does not buy {_as_noun(self.missed)}"
+        return f"the budget buys {bought}; whether it buys {_as_noun(self.missed)} was not decided within the limit"
 
     def pictured(self) -> GraphLike | None:
         """Return the mended network, where the budget buys one."""
@@ -149,6 +149,11 @@ def best_within(
             if on_improvement is not None:
                 on_improvement(BudgetResult(best, None, is_exact=False))
     return BudgetResult(best, missed, is_exact)
+
+
+def _as_noun(found: MendResult) -> str:
+    """Return the one goal of a result as what can be bought."""
+    return found.goal.replace("survives", "the survival of")
 
 
 def _first_climb(best: MendResult | None, model: str | None, n: int) -> Goal | None:

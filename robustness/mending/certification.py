@@ -12,14 +12,15 @@ from robustness.decision.certification import certify
 from robustness.digraph import Digraph
 from robustness.errors import InternalError, InvalidParameter
 from robustness.limits import Limits, Progress
+from robustness.mending.actions import with_actions
+from robustness.mending.completing import completed
 from robustness.mending.demands import bits
 from robustness.mending.goal import Part
-from robustness.mending.hitting_set import with_actions
 from robustness.mending.results import MendResult, Problem
 from robustness.results import Verdict
 from robustness.threat_models.certification import certify_promise
 
-__all__ = ["certify_mending"]
+__all__ = ["certify_mending", "least_claimed"]
 
 
 def certify_mending(
@@ -45,7 +46,8 @@ def certify_mending(
     Returns
     -------
     bytes or None
-        None when a limit was reached, or when the kernel has no evidence of the kind that the goal needs: local bounds
+        Its bound may be below that of the result, where it would take very many violations. None when a limit was
+        reached, or when the kernel has no evidence of the kind that the goal needs: local bounds
         beyond what (2f+1)-robustness gives.
 
     Raises
@@ -74,7 +76,13 @@ def certify_mending(
             proofs.append(proof)
     elif problem.least is None and not problem.pairs:
         return None  # too few nodes for a pair
-    return _encoded(problem, proofs)
+    return _encoded(completed(problem, limits), proofs)
+
+
+def least_claimed(certificate: bytes) -> int | None:
+    """Return the least cost that a mending certificate claims, in units of its actions."""
+    least: int | None = json.loads(certificate.partition(b"\n")[0])["claim"]["least"]
+    return least
 
 
 def _proof(mended: Digraph, part: Part, limits: Limits) -> bytes | None:

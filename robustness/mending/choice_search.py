@@ -37,9 +37,12 @@ class ChoiceSearch:
         Each of which costs at least 1.
     budget : int
         What a choice may cost, in units of the scale.
+    is_swapping : bool
+        Whether one of links that swapping two nodes makes the same is enough: then what is ruled out is ruled out by
+        the demands and their images under swaps.
     """
 
-    def __init__(self, heard: Sequence[int], actions: Actions, budget: int) -> None:
+    def __init__(self, heard: Sequence[int], actions: Actions, budget: int, *, is_swapping: bool = True) -> None:
         n, count = len(heard), len(actions.items)
         self._n = n
         self._actions = actions
@@ -79,7 +82,7 @@ class ChoiceSearch:
                 costs,
                 arcs,
                 max((len(item.arcs) for item in actions.items), default=1),
-                actions.most is None and len(set(costs.tolist())) <= 1,
+                is_swapping and self.can_swap(actions),
             ),
             budget,
             (self._heard, self._usable, self._options, self._picked, spents),
@@ -95,6 +98,11 @@ class ChoiceSearch:
         self._opened_count = np.zeros(levels, dtype=np.int64)
         self._row_count = self._unit_count = 0
         self._show_rows()
+
+    @staticmethod
+    def can_swap(actions: Actions) -> bool:
+        """Return whether nodes that nothing in the network tells apart can be swapped, costs and caps included."""
+        return actions.most is None and len({item.cost for item in actions.items}) <= 1
 
     @property
     def nodes(self) -> int:

@@ -53,6 +53,7 @@ class Asked(Protocol):
     rows: list[tuple[Side, Side]]
     covers: list[tuple[Part, tuple[int, ...], Cover]]
     base: list[int]
+    is_up_to_swapping: bool
 
     @property
     def is_done(self) -> bool:
@@ -122,6 +123,10 @@ class Deepening:
                 self._examine(chosen)
 
     def _rise(self, beyond: int | None) -> None:
+        self._raise_or_rule_out(beyond)
+        self._search.is_up_to_swapping = ChoiceSearch.can_swap(self._search.actions)
+
+    def _raise_or_rule_out(self, beyond: int | None) -> None:
         search = self._search
         if search.best is not None:
             most = search.cost(search.best)
@@ -183,8 +188,8 @@ class Deepening:
             cover = cover_around(search.base, U, part.r)
             self._around[part, U] = cover, price_outside(cover, search.graph.n, part.r, search.actions.items)
         cover, least = self._around[part, U]
-        if least is not None and least <= self._budget:
-            return False
+        if (least is not None and least <= self._budget) or any(V.bit_count() < 2 for V in cover):
+            return False  # certificates know no sets of one node, which would be of use for r = 1 alone
         if least is not None:
             self._evading = least if self._evading is None else min(self._evading, least)
         if (part, U) not in self._told:

@@ -9,10 +9,11 @@ from dataclasses import replace
 from robustness.digraph import Digraph, GraphLike, as_digraph
 from robustness.errors import InvalidParameter
 from robustness.limits import Limits, Progress
-from robustness.mending.actions import Actions, CostLike, Link, actions_for
+from robustness.mending.actions import Actions, CostLike, Link, actions_for, with_actions
+from robustness.mending.certification import certify_mending
 from robustness.mending.demands import sets_of
 from robustness.mending.goal import Goal, Part, goals_of, parts_of
-from robustness.mending.hitting_set import Search, with_actions
+from robustness.mending.hitting_set import Search
 from robustness.mending.master import load_solver
 from robustness.mending.results import Demand, MendResult, MendVerdict, Problem
 from robustness.natural_order import natural_key
@@ -164,7 +165,7 @@ def thin(
     kept = list(keep)
     for link in kept:
         if tuple(link) not in own and tuple(reversed(link)) not in own:
-            raise InvalidParameter(f"the link {link!r} that is to stay is not there: leave it out")
+            raise InvalidParameter(f"the link {link!r} that is to stay is not in the network: leave it out")
     actions = actions_for(empty, own, cost, forbid=(), require=kept, max_in_degree=None, one_way=graph.directed)
 
     def with_dropped(result: MendResult) -> MendResult:
@@ -202,9 +203,16 @@ _TELLING, _TELLING_EACH = 0.05, 2e-5
 def links_within(positions: Mapping[Hashable, Sequence[float]], reach: float) -> list[Link]:
     """Return all pairs of nodes whose places are at most ``reach`` apart: what a radio of this range can link.
 
+    Raises
+    ------
+    InvalidParameter
+        When ``reach`` is no number of at least 0.
+
     >>> links_within({"a": (0, 0), "b": (3, 4), "c": (9, 9)}, 5.0)
     [('a', 'b')]
     """
+    if not reach >= 0:
+        raise InvalidParameter(f"a range is a number of at least 0, not {reach!r}")
     nodes = sorted(positions, key=natural_key)
     return [
         (u, v)
@@ -263,6 +271,7 @@ def _result(search: Search, goals: tuple[Goal, ...], one_way: bool, seconds: flo
         reason=search.reason,
         seconds=seconds,
         problem=_problem(search),
+        certify=certify_mending,
     )
 
 
@@ -275,7 +284,9 @@ def _problem(search: Search) -> Problem:
     covers = () if search.is_impossible and search.witness is not None else tuple(search.covers)
     beyond_budget = search.is_impossible and search.witness is None and search.actions.budget is not None
     least = None if search.is_impossible and not beyond_budget else search.bound
-    return Problem(search.graph, search.actions, tuple(search.parts), search.best, least, pairs, covers)
+    return Problem(
+        search.graph, search.actions, tuple(search.parts), search.best, least, pairs, covers, search.is_up_to_swapping
+    )
 
 
 def _demand(part: Part, graph: Digraph, sets: Sets) -> Demand:

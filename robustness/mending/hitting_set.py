@@ -14,13 +14,13 @@ from __future__ import annotations
 
 import random
 from collections import Counter, defaultdict
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
 from robustness.digraph import Digraph
 from robustness.errors import InternalError, Undecided
 from robustness.limits import Limits, Progress
-from robustness.mending.actions import Actions
+from robustness.mending.actions import Actions, with_actions
 from robustness.mending.construction import grown_choices
 from robustness.mending.covers import Cover, lacking, rigid_components, starts_of
 from robustness.mending.deepening import Deepening
@@ -42,7 +42,7 @@ from robustness.mending.master import Master, Proposal
 from robustness.mending.oracle import first_violation
 from robustness.traps.question import Sets
 
-__all__ = ["Search", "with_actions"]
+__all__ = ["Search"]
 
 #: How many orders of giving up superfluous links are tried in a round; one when there are more links than so many.
 _ORDERS, _MANY = 3, 40
@@ -72,15 +72,6 @@ _FEW = 8
 Pair = tuple[Side, Side]
 
 
-def with_actions(graph: Digraph, actions: Actions, chosen: Iterable[int]) -> Digraph:
-    """Return the network with the links of the chosen actions."""
-    labels = graph.labels
-    arcs = [*graph.arcs(), *(arc for a in sorted(chosen) for arc in actions.items[a].arcs)]
-    said: dict[Hashable, Mapping[str, object]] = dict(graph.node_attributes.items())
-    joined = ((labels[u], labels[v]) for u, v in arcs)
-    return Digraph(labels, joined, directed=graph.directed, node_attributes=said)
-
-
 @dataclass(slots=True)
 class Search:
     """One question, its demands, the best choice so far and the proven lower bound.
@@ -100,6 +91,8 @@ class Search:
     covers : list of (Part, starts, Cover)
         The covers behind its other rows, and those behind the demands of the tree search
         (:mod:`robustness.mending.covers`).
+    is_up_to_swapping : bool
+        Whether the bound follows from the demands and their images under swaps of nodes, not from them alone.
     """
 
     graph: Digraph
@@ -116,6 +109,7 @@ class Search:
     rows: list[Pair] = field(default_factory=list)
     covers: list[tuple[Part, tuple[int, ...], Cover]] = field(default_factory=list)
     base: list[int] = field(default_factory=list)
+    is_up_to_swapping: bool = False
     _seen: set[Pair] = field(default_factory=set)
     _pool: dict[tuple[Part, int], dict[int, Side]] = field(default_factory=dict)
     _master: Master | None = None
@@ -163,6 +157,8 @@ class Search:
         if self._keeps_caps(self.actions.required) and self._is_enough(self.actions.required, self.limits.share(0.5)):
             self.bound = self.cost(self.actions.required)
             self.improve(self.actions.required)
+            if self.best is None:  # they cost more than the budget
+                self.rule_out()
             return
         grown = sorted(grown_choices(self.base, self.parts, self.actions), key=self.cost)
         for chosen in grown:
@@ -247,7 +243,7 @@ class Search:
     def raise_bound(self, proven: int) -> None:
         """No choice that reaches the goal costs less than this."""
         if proven > self.bound:
-            self.bound = proven
+            self.bound, self.is_up_to_swapping = proven, False
             self._tell()
 
     def _shaken(self, chosen: frozenset[int], turn: int) -> frozenset[int] | None:

@@ -72,7 +72,7 @@ class Margin(Shown):
         """Return the margin in one sentence."""
         kind = "node" if self.nodes else "link"
         if self.losses == 0:
-            return f"the network is not {self.goal} as it is"
+            return f"the network does not reach the goal, {self.goal}, as it is"
         if self.losses is None:
             return (
                 f"no loss destroys it: {self.goal}"

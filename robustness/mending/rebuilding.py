@@ -65,11 +65,14 @@ class Confirmation:
     verdict : LeastVerdict
     cheaper : tuple of pairs of ids
         When refuted: links that break all violations of the certificate and cost less than it claims.
+    reason : str
+        Why HiGHS decided nothing, where it was no limit.
     """
 
     claim: VerifiedMendingClaim
     verdict: LeastVerdict
     cheaper: tuple[tuple[int, int], ...] = ()
+    reason: str = ""
 
     @property
     def solver(self) -> str:
@@ -86,7 +89,9 @@ class Confirmation:
         if self.verdict is LeastVerdict.REFUTED:
             found = counted(len(self.cheaper), "link")
             return f"HiGHS breaks them all with {found} that cost less than the certificate says"
-        return f"undecided whether {what}: neither the kernel's tree over choices nor HiGHS decided within the limits"
+        why = f"the kernel's tree over choices did not decide within its limits, and {self.reason}"
+        neither = "neither the kernel's tree over choices nor HiGHS decided within the limits"
+        return f"undecided whether {what}: {why if self.reason else neither}"
 
 
 def confirm_least(
@@ -171,9 +176,10 @@ class _Rebuilt:
         self._n = len(self._hears)
         actions = document["actions"]
         self._links = [(u, v) for u, v, _ in actions["links"]]
+        self._costs = [cost for *_, cost in actions["links"]]
         self._model = mathopt.Model(name="mending")
         self._x = [self._model.add_binary_variable() for _ in self._links]
-        self._cost = self._sum(cost * x for (_, _, cost), x in zip(actions["links"], self._x, strict=True))
+        self._cost = self._sum(cost * x for cost, x in zip(self._costs, self._x, strict=True))
         self._into: dict[int, list[tuple[int, Any]]] = defaultdict(list)
         for (u, v), x in zip(self._links, self._x, strict=True):
             for tail, head in ((u, v),) if actions["one_way"] else ((u, v), (v, u)):
@@ -280,11 +286,17 @@ class _Rebuilt:
         def work() -> Any:
             return mathopt.solve(self._model, mathopt.SolverType.HIGHS, params=parameters)
 
-        found = in_a_thread("robustness-highs", work)
+        try:
+            found = in_a_thread("robustness-highs", work)
+        except Exception as problem:  # noqa: BLE001  # whatever a solver fails with, it has decided nothing
+            return Confirmation(claim, LeastVerdict.UNDECIDED, reason=f"HiGHS failed: {problem}")
         if found.termination.reason in (reached.OPTIMAL, reached.FEASIBLE):
             values = found.variable_values()
-            chosen = tuple(ends for ends, x in zip(self._links, self._x, strict=True) if values[x] > 0.5)
-            return Confirmation(claim, LeastVerdict.REFUTED, chosen)
+            taken = [a for a, x in enumerate(self._x) if values[x] > 0.5]
+            if claim.least is not None and sum(self._costs[a] for a in taken) >= claim.least:
+                # To a tolerance a link that costs 10^9 can be left out by a millionth.
+                return Confirmation(claim, LeastVerdict.UNDECIDED, reason="the costs are too large for HiGHS")
+            return Confirmation(claim, LeastVerdict.REFUTED, tuple(self._links[a] for a in taken))
         # Every variable lies between 0 and 1, so that nothing here is unbounded.
         confirmed = found.termination.reason in (reached.INFEASIBLE, reached.INFEASIBLE_OR_UNBOUNDED)
         return Confirmation(claim, LeastVerdict.CONFIRMED if confirmed else LeastVerdict.UNDECIDED)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import enum
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -65,6 +65,8 @@ class Problem:
         Violations of ``graph``; the bound follows from them and from the covers.
     covers : tuple of (Part, starts, cover)
         Covers of its links with their starts, all masks of nodes (:mod:`robustness.mending.covers`).
+    is_up_to_swapping : bool
+        Whether the bound needs images of the pairs under swaps of nodes as well (:mod:`robustness.mending.completing`).
     """
 
     graph: Digraph
@@ -74,6 +76,7 @@ class Problem:
     least: int | None
     pairs: tuple[tuple[Part, Sets], ...]
     covers: tuple[tuple[Part, tuple[int, ...], tuple[int, ...]], ...] = ()
+    is_up_to_swapping: bool = False
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -109,6 +112,8 @@ class MendResult(Shown):
     problem : Problem or None
         The question in ids, for :func:`robustness.mending.certify_mending`.
     seconds : float
+    certify : callable or None
+        What makes :attr:`certificate`.
     """
 
     verdict: MendVerdict
@@ -126,6 +131,15 @@ class MendResult(Shown):
     reason: str = ""
     seconds: float = field(default=0.0, compare=False)
     problem: Problem | None = field(default=None, repr=False, compare=False)
+    certify: Callable[[MendResult], bytes | None] | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def certificate(self) -> bytes | None:
+        """A certificate of the links and of the bound, verified by the kernel; None when there is no evidence.
+
+        Made anew whenever it is asked for, without any limit; :func:`robustness.mending.certify_mending` takes limits.
+        """
+        return None if self.certify is None else self.certify(self)
 
     def __bool__(self) -> bool:
         raise TypeError("a MendResult has no truth value: compare .verdict")

@@ -52,7 +52,7 @@ def both(*changes: Callable[[dict[str, Any]], object]) -> Callable[[dict[str, An
 
 @cache
 def made(goal: rb.Goal = GOALS[1], one_way: bool = False) -> bytes:
-    data = certify_mending(rb.mend(PATH, goal, one_way=one_way, require=[(0, 2)], max_in_degree=4))
+    data = certify_mending(rb.mend(PATH, goal, one_way=one_way, mandatory=[(0, 2)], max_in_degree=4))
     assert data is not None
     return data
 
@@ -111,6 +111,33 @@ def test_a_bound_that_is_too_high_is_refuted_by_the_other_solver(goal: rb.Goal) 
     found = confirm_least(PATH.canonical_bytes(), header)
     assert found.verdict is LeastVerdict.REFUTED
     assert "HiGHS breaks them all with" in str(found)
+
+
+def test_a_solver_that_fails_or_counts_to_a_tolerance_decides_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    from ortools.math_opt.python import mathopt
+
+    def fail(*_: object, **__: object) -> object:
+        raise AttributeError("'StatusNotOk' object has no attribute 'canonical_code'")
+
+    data, graph = made(), PATH.canonical_bytes()
+    with monkeypatch.context() as patched:
+        patched.setattr(mathopt, "solve", fail)
+        found = confirm(graph, data, choices=0)
+        assert found.verdict is LeastVerdict.UNDECIDED
+        assert "HiGHS failed: 'StatusNotOk'" in str(found)
+        assert confirm(graph, data).verdict is LeastVerdict.CONFIRMED
+    solve = mathopt.solve
+
+    def without_the_ceiling(model: Any, *arguments: Any, **options: Any) -> Any:
+        for row in list(model.linear_constraints()):
+            if row.upper_bound == found.claim.least - 1:  # type: ignore[operator]
+                model.delete_linear_constraint(row)
+        return solve(model, *arguments, **options)
+
+    monkeypatch.setattr(mathopt, "solve", without_the_ceiling)
+    found = confirm(graph, data, choices=0)
+    assert (found.verdict, found.cheaper) == (LeastVerdict.UNDECIDED, ())
+    assert "the costs are too large for HiGHS" in str(found)
 
 
 def test_without_its_violations_a_bound_does_not_follow() -> None:

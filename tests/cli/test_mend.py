@@ -82,6 +82,17 @@ def test_a_certificate_of_thinning_is_verified_with_the_network(tmp_path: Path) 
     assert run("verify", tmp_path / "five.json", tmp_path / "t.cert").exit_code == ExitCode.DONE
 
 
+def test_arcs_are_counted_where_links_run_one_way(platoon: Path, tmp_path: Path) -> None:
+    mended = tmp_path / "mended.json"
+    done = run("mend", platoon, "-r", 2, "--one-way", "-o", mended)
+    added = done.stdout.count("  add  ")
+    assert "before  10 arcs, r* = 1" in done.stdout
+    assert f"after   {10 + added} arcs, r* = 2" in done.stdout
+    assert rb.read_topology(mended).arc_count == 10 + added
+    said = json.loads(run("mend", platoon, "-r", 2, "--one-way", "--json").stdout)
+    assert (said["before"]["links"], said["after"]["links"]) == (10, 10 + added)
+
+
 def test_json(platoon: Path) -> None:
     found = json.loads(run("mend", platoon, "--survive", 1, "--model", "delayed", "--json").stdout)
     assert found["schema"] == "robustness/mend/1"
@@ -291,7 +302,7 @@ class TestCostsAndCapsFromFiles:
     def test_a_budget_and_a_threat_model_without_a_goal(self, path: Path) -> None:
         bought = run("mend", path, "--budget", 3, "--model", "delayed")
         assert bought.exit_code == ExitCode.DONE
-        assert bought.stdout.startswith("the budget buys survives f = 1 under delayed, for 3")
+        assert bought.stdout.startswith("the budget buys the survival of f = 1 under delayed, for 3")
         assert run("mend", path, "--model", "delayed").exit_code == ExitCode.USAGE
 
 

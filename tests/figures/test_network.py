@@ -88,6 +88,12 @@ class TestMarks:
         assert marks.added == {(0, 2), (2, 0)}
         assert marks.dropped == {(0, 1), (1, 0)}
 
+    def test_one_way_links_of_an_undirected_network_go_one_way(self) -> None:
+        path = nx.path_graph(4)
+        mended = rb.mend(path, 2, one_way=True)
+        for graph in (path, mended.graph):
+            assert marks_of(as_digraph(graph), mended).added == set(mended.links)
+
 
 class TestDraw:
     def test_every_answer_is_drawn_and_returns_its_axes(self) -> None:
@@ -101,6 +107,26 @@ class TestDraw:
         for graph, answer in answers:
             ax = axes()
             assert rb.draw(graph, answer, ax=ax) is ax
+
+    def test_a_link_both_ways_has_no_head_beside_arcs_that_have_one(self) -> None:
+        class Mended:
+            links = ((0, 2), (2, 0), (1, 3), (1, 0))
+
+        arcs: list[tuple[tuple[int, int], ...]] = []
+        heads: list[str] = []
+        with pytest.MonkeyPatch.context() as patched:
+
+            def note(graph: object, pos: object, edgelist: Any, **options: Any) -> list[object]:
+                arcs.append(tuple(edgelist))
+                heads.append(str(options.get("arrowstyle")))
+                return []
+
+            patched.setattr(nx, "draw_networkx_edges", note)
+            rb.draw(nx.DiGraph([(0, 1), (1, 2), (0, 2), (2, 0), (1, 3), (1, 0)]), Mended(), ax=axes())
+        drawn = dict(zip(arcs, heads, strict=True))
+        assert drawn[(0, 2),] == "-"
+        assert drawn[(1, 0), (1, 3)] == "-|>"
+        assert drawn[(0, 1), (1, 2)] == "-|>"  # what was there stays to be seen
 
     def test_answers_draw_themselves(self) -> None:
         for answer in (

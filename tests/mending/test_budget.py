@@ -27,6 +27,25 @@ def test_a_goal_is_reached_within_a_budget_exactly_when_its_least_cost_is() -> N
                 assert found.verdict is (MendVerdict.OPTIMAL if budget >= least else MendVerdict.IMPOSSIBLE)
 
 
+def test_required_links_that_cost_more_than_the_budget() -> None:
+    """Whether they reach the goal alone, with others, or not at all, and for every way to ask."""
+    for network, mandatory in ((nx.complete_graph(5), [(0, 2)]), (nx.path_graph(5), [(0, 2), (1, 3)])):
+        base = nx.Graph(network)
+        base.remove_edges_from(mandatory)
+        for one_way, goal in ((False, (2, 1)), (True, (2, 1)), (False, (2, 2)), (False, rb.Goal(survive=1))):
+            for any_choice in (False, True):
+                found = rb.mend(base, goal, mandatory=mandatory, one_way=one_way, budget=0.5, any_choice=any_choice)
+                assert found.verdict is MendVerdict.IMPOSSIBLE
+                assert "within the budget" in found.summary()
+                data = certify_mending(found)
+                assert data is not None
+                confirmed = confirm_least(found.before.canonical_bytes(), data)
+                assert confirmed.verdict is LeastVerdict.CONFIRMED
+                assert confirmed.claim.cost is None
+        assert best_within(base, 0.5, mandatory=mandatory).is_exact
+        assert best_within(base, 0.5, mandatory=mandatory).best is None
+
+
 def test_the_most_a_budget_buys() -> None:
     rng = random.Random(3)
     for _ in range(3):

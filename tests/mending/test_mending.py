@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import random
+from dataclasses import replace
 
 import networkx as nx
 import pytest
@@ -11,8 +12,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import robustness as rb
+from certificates import verify_mending
+from robustness.digraph import as_digraph
 from robustness.errors import InvalidParameter
-from robustness.mending import MendVerdict
+from robustness.mending import MendVerdict, certify_mending
 from robustness.mending.front import links_within
 from robustness.traps import find_trap
 from tests.mending.brute_force import candidates, is_robust, least_cost, survives
@@ -118,7 +121,7 @@ class TestConstraints:
         barred = rb.mend(nx.path_graph(5), 2, forbid=free.links)
         assert not set(barred.links) & set(free.links)
         with pytest.raises(InvalidParameter, match="both mandatory and forbidden"):
-            rb.mend(nx.path_graph(5), 2, require=[(0, 2)], forbid=[(2, 0)])
+            rb.mend(nx.path_graph(5), 2, mandatory=[(0, 2)], forbid=[(2, 0)])
 
     def test_caps_on_what_a_node_hears(self) -> None:
         found = rb.mend(nx.star_graph(5), 2, max_in_degree=3)
@@ -134,6 +137,15 @@ class TestConstraints:
         assert both.cost is not None
         assert found.cost is not None
         assert both.cost <= found.cost <= 2 * both.cost
+        assert found.graph.directed
+        arcs = {arc for u, v in nx.path_graph(4).edges for arc in ((u, v), (v, u))} | set(found.links)
+        assert set(found.graph.to_networkx().edges) == arcs
+        assert not found.before.directed
+
+    def test_no_network_is_undirected_that_has_an_arc_one_way(self) -> None:
+        assert rb.Digraph("ab", [("a", "b")], directed=False).directed
+        assert not rb.Digraph("ab", [("a", "b"), ("b", "a")], directed=False).directed
+        assert rb.Digraph("ab", [("a", "b"), ("b", "a")]).directed
 
     def test_radio_range(self) -> None:
         places = {k: (float(k), 0.0) for k in range(6)}
@@ -215,7 +227,7 @@ class TestThin:
         kept = [(0, 1), (0, 2), (0, 3), (0, 4)]
         found = rb.thin(nx.complete_graph(6), 2, keep=kept)
         assert set(kept) <= set(found.links)
-        with pytest.raises(InvalidParameter, match="is not there"):
+        with pytest.raises(InvalidParameter, match="is not in the network"):
             rb.thin(nx.path_graph(3), 1, keep=[(0, 2)])
 
 
@@ -265,6 +277,14 @@ class TestMargin:
 def test_goals_that_cannot_be_meant(goal: object) -> None:
     with pytest.raises(InvalidParameter, match="a goal is"):
         rb.mend(nx.path_graph(4), goal)
+
+
+def test_the_certificate_of_a_result() -> None:
+    found = rb.mend(nx.path_graph(5), 2)
+    assert found.certificate == certify_mending(found)
+    thinned = rb.thin(nx.complete_graph(4), 2)
+    assert verify_mending(as_digraph(nx.empty_graph(4)).canonical_bytes(), thinned.certificate or b"").least == 5
+    assert replace(found, certify=None).certificate is None
 
 
 def test_misuse() -> None:
