@@ -1,5 +1,5 @@
 """``python -m cli``, in a checkout, is ``robustness``."""
 
-from .main import main
+from robustness.__main__ import main
 
 main()

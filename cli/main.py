@@ -46,6 +46,13 @@ COMMANDS: Mapping[str, str] = MappingProxyType(
 class CommandTable(SuggestingGroup):
     """A group that looks commands up in :data:`COMMANDS` and ends every one of them in an :class:`ExitCode`."""
 
+    def make_context(self, *arguments: Any, **options: Any) -> click.Context:
+        """Read the words before the command; Ctrl-C meanwhile is what it is later, not click's "Aborted!"."""
+        try:
+            return super().make_context(*arguments, **options)
+        except KeyboardInterrupt as stop:
+            raise SystemExit(_report(Console(), stop)) from None
+
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the commands whose modules are there, in the order of the table."""
         places = ((name, place.partition(":")[0]) for name, place in COMMANDS.items())

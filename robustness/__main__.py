@@ -20,9 +20,13 @@ _NAME = "robustness.cli"
 def main() -> None:
     """Run the command line."""
     here = Path(__file__).resolve().parent
-    if not (here / "cli").is_dir():
-        _load_from(here.parent / "cli")
-    importlib.import_module(f"{_NAME}.main").main()
+    try:
+        if not (here / "cli").is_dir():
+            _load_from(here.parent / "cli")
+        importlib.import_module(f"{_NAME}.main").main()
+    except KeyboardInterrupt:  # while it is imported; later the command line says this, and what is known
+        sys.stderr.write("interrupted: nothing is claimed\n")
+        sys.exit(130)
 
 
 def _load_from(folder: Path) -> None:

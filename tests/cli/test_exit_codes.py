@@ -11,6 +11,7 @@ import sys
 import threading
 import time
 from pathlib import Path
+from typing import NoReturn
 
 import networkx as nx
 import pytest
@@ -20,6 +21,7 @@ import certificates
 from cli.exit_codes import ExitCode
 from cli.main import COMMANDS, robustness
 from robustness import errors
+from robustness.__main__ import main as entry
 from robustness.files import write_topology
 
 ROOT = Path(__file__).parents[2]
@@ -181,14 +183,33 @@ def test_ctrl_c_prints_the_bounds_and_ends_soon(hard: str, question: list[str]) 
             time.sleep(patience)
             process.send_signal(signal.SIGINT)
             out, err = process.communicate(timeout=120)  # without the signal: years
-        assert process.returncode == 130
-        document = json.loads(out)
-        if document["schema"] != "robustness/error/1":  # on a busy machine the search may not have begun
+        assert (process.returncode, err[:12]) == (130, b"interrupted:")
+        document = json.loads(
+            out or b'{"schema": "none yet"}'
+        )  # on a busy machine the command may not have been imported
+        if document["schema"] not in ("robustness/error/1", "none yet"):  # nor the search begun
             break
     assert document["verdict"] == "undecided"
     assert 0 <= document["bounds"]["lower"] <= document["bounds"]["upper"] <= 30
     assert err.decode().startswith("interrupted:")
     assert b"Traceback" not in err
+
+
+def test_ctrl_c_before_the_command_is_there_is_told_in_a_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupt(*_: object, **__: object) -> NoReturn:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr("importlib.import_module", interrupt)
+        with pytest.raises(SystemExit) as end:
+            entry()
+    assert end.value.code == 130
+    assert capsys.readouterr().err == "interrupted: nothing is claimed\n"
+    monkeypatch.setattr("click.Group.parse_args", interrupt)
+    outcome = CliRunner().invoke(robustness, ["check", SQUARE])
+    assert (outcome.exit_code, outcome.stderr) == (130, "interrupted: nothing is claimed\n")
 
 
 def test_a_reader_that_goes_away_changes_no_code() -> None:
