@@ -89,6 +89,8 @@ def test_the_tab_key_completes(shell: str, keys: str, expected: str, tmp_path: P
     target = tmp_path / place
     target.parent.mkdir(parents=True, exist_ok=True)
     target.write_text(line + "\n", encoding="utf-8")
+    # Or fish reads all manual pages of the machine, in a process that outlives it.
+    (tmp_path / ".local/share/fish/generated_completions").mkdir(parents=True)
     (tmp_path / "platoon,1.json").write_text("{}", encoding="utf-8")
     assert expected in typed(shell, keys, expected, tmp_path)
 
