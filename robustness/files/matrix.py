@@ -169,7 +169,8 @@ def links_in(
     odd = off & (~np.isfinite(values) | (values < 0))
     if not odd.any() and np.isfinite(values).all():
         beside = values[off]
-        is_measured = beside.all() and (beside != beside[:1]).any()  # more likely distances than a complete network
+        # Of three nodes or more these are more likely distances than a complete network.
+        is_measured = len(values) > 2 and beside.all() and (beside != beside[:1]).any()
         return values != 0, [_COMPLETE] if is_measured else []
     is_laplacian = np.isfinite(values).all() and (values[off] <= 0).all() and (values.diagonal() >= 0).all()
     if is_laplacian and np.allclose(values.sum(axis=1), 0):

@@ -197,7 +197,7 @@ class TestContacts:
     @pytest.mark.parametrize(
         ("text", "message"),
         [
-            ("", "at least one contact"),
+            ("", "is empty"),
             ("time,source,target\n", "at least one contact"),
             ("0,a,b\n1,a\n", r"line 2: has 2 columns, but line 1 has 3"),
             ("time,source,target\nnoon,a,b\n", r"line 2: the time is a decimal number, not 'noon'"),
@@ -268,7 +268,7 @@ class TestContacts:
             [node_link([]), {**node_link([]), "nodes": [{"id": 0}]}],
             r"step 1: every step has .* node 1 is missing",
         ),
-        ("s.jsonl", "", "at least one step"),
+        ("s.jsonl", "", "is empty"),
         ("s.jsonl", '{"nodes": [0]}\n', "at least one step"),
         ("s.jsonl", '{"nodes": [0, 1]}\n\n[[0, 1]]\n[[0 1]]\n', r"line 4: column 5"),
         ("s.jsonl", '{"nodes": [0, 1]}\n\n[[0, 1]]\n[[0, 2]]\n', r"step 1 \(line 4\): .* 2 is none"),
