@@ -10,6 +10,7 @@ import click
 
 from .choices import THREAT_MODEL_NAMES
 from .exit_codes import ExitCode
+from .named import FILE
 from .options import ReadingCommand, graph_argument, load_graph
 from .output import Console, ProgressLine, graph_document
 from .query import Query, query_options
@@ -56,7 +57,7 @@ _STEPS = 12
     show_default=True,
     help="How long it is played; it repeats after two.",
 )
-@click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE", help="Write it.")
+@click.option("-o", "--output", type=FILE, metavar="FILE", help="Write it.")
 @click.option("--expect", type=click.Choice(("agreement", "split")), help="Exit with 10 when it ends otherwise.")
 @query_options(algorithm=True)
 def command(

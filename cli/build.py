@@ -13,6 +13,7 @@ import click
 from robustness.spelled import counted
 
 from .exit_codes import ExitCode
+from .named import FILE_NAME
 from .options import json_option, talk_options
 from .output import Console, graph_document, pass_console, set_text
 from .query import speaking
@@ -142,9 +143,7 @@ def _family_command(family: Family) -> click.Command:
         else:
             settings |= {"metavar": _METAVARS[each.kind], "type": str}
         options.append(click.Option([f"--{each.name}", each.name], **settings))
-    output = click.Option(
-        ["-o", "--output"], type=click.Path(dir_okay=False), metavar="FILE", help="Write there, by the suffix."
-    )
+    output = click.Option(["-o", "--output"], type=FILE_NAME, metavar="FILE", help="Write there, by the suffix.")
 
     @pass_console
     @click.pass_context

@@ -11,6 +11,7 @@ from robustness.spelled import counted, plural
 
 from .exit_codes import ExitCode
 from .interruption import Overrun
+from .named import FILE
 from .options import ReadingCommand, graph_argument, load_graph
 from .output import Console, ProgressLine, graph_document
 from .query import Query, query_options
@@ -32,14 +33,14 @@ SCHEMA = "robustness/certify/1"
 @click.option(
     "-o",
     "--output",
-    type=click.Path(path_type=Path),
+    type=FILE,
     metavar="FILE",
     required=True,
     help="Where the certificate goes; FILE.gz is compressed.",
 )
 @click.option(
     "--canonical",
-    type=click.Path(path_type=Path),
+    type=FILE,
     metavar="FILE",
     help="Also write the canonical graph, which 'python -m certificates verify' reads whatever GRAPH's format.",
 )

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .exit_codes import ExitCode
+from .named import FILE
 from .options import ReadingCommand, graph_argument, load_graph
 from .output import Console, ProgressLine, graph_document
 from .query import Query, query_options
@@ -35,7 +36,7 @@ SCHEMA = "robustness/draw/1"
 @click.option(
     "--attack",
     "attack_file",
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=FILE,
     metavar="FILE",
     help="Mark the attack that 'attack -o' wrote.",
 )
@@ -43,7 +44,7 @@ SCHEMA = "robustness/draw/1"
     "-o",
     "--output",
     required=True,
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=FILE,
     metavar="FILE",
     help="The picture: .svg, .png or .pdf.",
 )

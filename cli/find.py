@@ -15,6 +15,7 @@ from robustness.spelled import counted
 from .build import encode_with_attributes, write_graph
 from .exit_codes import ExitCode
 from .interruption import Overrun
+from .named import FILE_NAME
 from .output import Console, ProgressLine, graph_document
 from .query import Query, query_options
 
@@ -55,7 +56,7 @@ class NodeNumbers(click.ParamType):  # type: ignore[type-arg]  # generic only fr
 @click.option("--violates", "-x", multiple=True, metavar="PROPERTY", help="A property it has not; repeat for more.")
 @click.option("--directed", is_flag=True, help="Search among digraphs.")
 @click.option("--fewest-edges", is_flag=True, help="Look for a graph with the fewest edges.")
-@click.option("-o", "--output", type=click.Path(dir_okay=False), metavar="FILE", help="Write the graph there.")
+@click.option("-o", "--output", type=FILE_NAME, metavar="FILE", help="Write the graph there.")
 @query_options(cluster=True, state=False)
 def command(
     ctx: click.Context,

@@ -14,6 +14,7 @@ from robustness.spelled import counted, robust
 
 from .exit_codes import ExitCode
 from .interruption import Overrun
+from .named import FILE, FILE_NAME
 from .options import ReadingCommand, complete_files, load_sequence, reading_options
 from .output import Console, ProgressLine, set_text
 from .query import Query, query_options
@@ -91,12 +92,18 @@ class Report:
 @click.option(
     "--plot",
     "picture",
-    type=click.Path(dir_okay=False),
+    type=FILE_NAME,
     metavar="FILE",
     help="Draw windows and curve: .svg, .png or .pdf.",
 )
-@click.option("-o", "--certificate", type=click.Path(path_type=Path), metavar="FILE", help="Where a certificate goes.")
-@click.option("--canonical", type=click.Path(path_type=Path), metavar="FILE", help="Where the canonical SEQ goes.")
+@click.option(
+    "-o",
+    "--certificate",
+    type=FILE,
+    metavar="FILE",
+    help="Where a certificate goes.",
+)
+@click.option("--canonical", type=FILE, metavar="FILE", help="Where the canonical SEQ goes.")
 @query_options(algorithm=True)
 def command(
     ctx: click.Context,

@@ -18,6 +18,7 @@ from robustness.spelled import counted
 from .choices import THREAT_MODEL_NAMES
 from .exit_codes import ExitCode
 from .interruption import interruptibly
+from .named import FILE, FOLDER
 from .options import Seconds, asked_reading, complete_files, jobs_option, reading_options, seed_option, timeout_option
 from .output import Console
 
@@ -53,7 +54,7 @@ class _Listing(click.File):
 
 state_option = click.option(
     "--state",
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=FILE,
     metavar="FILE",
     help="A journal of finished rows: the same command goes on where it was stopped or killed.",
 )
@@ -83,7 +84,7 @@ _OPTIONS: tuple[Callable[[Any], Any], ...] = (
     click.option("--no-models", is_flag=True, help="Only r* and s: no threat model is looked at."),
     click.option(
         "--certificates",
-        type=click.Path(file_okay=False, path_type=Path),
+        type=FOLDER,
         metavar="DIR",
         help="Write a certificate of r* for every network.",
     ),

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .answered import answer, tell
-from .mending import FILE, Kept, caps_in, costs_in, goal_and_files, links_in
+from .mending import Kept, caps_in, costs_in, goal_and_files, links_in
+from .named import FILE
 from .options import ReadingCommand, graph_argument, load_graph
 from .output import Console
 from .query import Query, query_options

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .choices import THREAT_MODEL_NAMES
+from .named import FILE
 from .options import asked_reading
 
 if TYPE_CHECKING:
@@ -32,8 +33,6 @@ __all__ = [
     "links_in",
 ]
 
-#: A file that is read or written whole.
-FILE = click.Path(dir_okay=False, path_type=Path)
 
 _GOAL_OPTIONS = (
     click.option("-r", "r", type=click.IntRange(min=0), metavar="R", help="The goal: (R,S)-robust."),

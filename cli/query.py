@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from .interruption import interruptibly, is_left_behind
+from .named import FILE
 from .options import algorithm_option, jobs_option, json_option, seed_option, talk_options, timeout_option
 from .output import ProgressLine, pass_console
 
@@ -32,7 +33,7 @@ cluster_option = click.option(
 cubes_option = click.option(
     "--state",
     "cubes",
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=FILE,
     metavar="FILE",
     help="A journal of what is refuted: the same command goes on where it was stopped or killed.",
 )

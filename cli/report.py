@@ -16,6 +16,7 @@ from .many_networks import (
     run_survey,
     state_option,
 )
+from .named import FILE
 from .options import ReadingCommand, Seconds, json_option
 from .output import Console
 from .query import speaking
@@ -31,7 +32,7 @@ SCHEMA = "robustness/report/1"
     "-o",
     "--output",
     required=True,
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=FILE,
     metavar="FILE.html",
     help="For the page.",
 )

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import click
 
 from .choices import ADVERSARY_NAMES, EXPERIMENT_NAMES, FAULT_MODEL_NAMES, RULE_NAMES, SCHEDULE_NAMES
+from .named import FILE, PLACE
 from .options import ReadingCommand, complete_files, reading_options
 from .output import Console
 from .query import Query, query_options
 from .simulate_asked import SCHEMA, Simulation
 
 __all__ = ["SCHEMA", "command"]
-
-_FILE = click.Path(dir_okay=False, path_type=Path)
 
 
 @click.command("simulate", cls=ReadingCommand, short_help="Run resilient consensus under attack: agreement or split?")
@@ -27,9 +25,9 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
     help="Instead of GRAPH an experiment of Safi, Dibaji and Pirani, Resilient Coordinated Movement of "
     "Connected Autonomous Vehicles.",
 )
-@click.option("--replay", type=_FILE, metavar="FILE", help="A run recorded with --save instead of GRAPH.")
-@click.option("--attack", "attack_file", type=_FILE, metavar="FILE", help="Play the attack that 'attack -o' wrote.")
-@click.option("--certificate", type=_FILE, metavar="FILE", help="Play the whole battery against a certificate.")
+@click.option("--replay", type=FILE, metavar="FILE", help="A run recorded with --save instead of GRAPH.")
+@click.option("--attack", "attack_file", type=FILE, metavar="FILE", help="Play the attack that 'attack -o' wrote.")
+@click.option("--certificate", type=FILE, metavar="FILE", help="Play the whole battery against a certificate.")
 @click.option("-f", "f", type=click.IntRange(min=0), metavar="F", help="The bound on faults; 1 unless given.")
 @click.option("--malicious", multiple=True, metavar="NODE", help="May be repeated; the F heard by most unless given.")
 @click.option(
@@ -69,14 +67,14 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
     show_default=True,
     help="Of links: 1/d, or 1.",
 )
-@click.option("--save", type=_FILE, metavar="FILE", help="Record the (first) run, or a counterexample.")
+@click.option("--save", type=FILE, metavar="FILE", help="Record the (first) run, or a counterexample.")
 @click.option(
     "--plot",
-    type=click.Path(path_type=Path),
+    type=PLACE,
     metavar="PATH",
     help="A picture (.png, .svg, .pdf); with --experiment also a folder for one per case.",
 )
-@click.option("--animate", type=_FILE, metavar="FILE", help="The first run as a film: .gif, or .html to play.")
+@click.option("--animate", type=FILE, metavar="FILE", help="The first run as a film: .gif, or .html to play.")
 @click.option(
     "--last-step",
     type=click.IntRange(min=1),

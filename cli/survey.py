@@ -16,6 +16,7 @@ from .many_networks import (
     run_survey,
     state_option,
 )
+from .named import FILE
 from .options import ReadingCommand, Seconds, json_option
 from .output import Console, terminal_width
 from .query import cluster_option, joined_cluster, speaking
@@ -32,7 +33,7 @@ _NAMES = tuple(_KINDS.values())
 @click.command("survey", cls=ReadingCommand, short_help="One row of facts for each of many networks with gates.")
 @many_networks_options
 @click.option("--as", "kind", type=click.Choice(_NAMES), help="How rows are written; told by the suffix of -o.")
-@click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE", help="For the rows.")
+@click.option("-o", "--output", type=FILE, metavar="FILE", help="For the rows.")
 @state_option
 @click.option(
     "--mending",

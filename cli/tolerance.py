@@ -17,6 +17,7 @@ from robustness.spelled import counted, plural
 from .choices import THREAT_MODEL_NAMES
 from .exit_codes import ExitCode
 from .interruption import Overrun
+from .named import FOLDER
 from .options import ReadingCommand, Seconds, graph_argument, load_graph, load_sequence
 from .output import Console, ProgressLine, graph_document, set_text, wrapped
 from .query import Query, query_options
@@ -105,9 +106,7 @@ class Report:
 )
 @click.option("--gap", type=click.IntRange(min=1), metavar="G", help="Updates at most G steps apart; with --tau 1.")
 @click.option("--period", type=click.IntRange(min=1), metavar="P", help="With --tau: the last P steps repeat for ever.")
-@click.option(
-    "-o", "--output", type=click.Path(file_okay=False, path_type=Path), metavar="DIR", help="Write certificates there."
-)
+@click.option("-o", "--output", type=FOLDER, metavar="DIR", help="Write certificates there.")
 @query_options()
 def command(
     ctx: click.Context,

@@ -10,6 +10,7 @@ import click
 
 from .choices import FACES
 from .exit_codes import ExitCode
+from .named import PLACE
 from .options import ReadingCommand, Seconds, asked_reading, graph_argument, json_option, load_graph
 from .output import Console, ProgressLine
 from .query import speaking
@@ -26,7 +27,7 @@ SCHEMA = "robustness/verify/1"
 
 @click.command("verify", cls=ReadingCommand, short_help="Verify a certificate of any kind and compare its claim.")
 @graph_argument
-@click.argument("certificate", type=click.Path(path_type=Path))
+@click.argument("certificate", type=PLACE)
 @click.option(
     "--expect",
     type=click.Choice(["robust", "not-robust", "together", "apart"]),

@@ -31,6 +31,8 @@ def _split(text: str) -> list[str]:
 
 def _agree(cells: list[list[str]]) -> bool:
     """Return whether every node has one row, every cell is a node, and neighbours name one another."""
+    if not all(cells):  # a line of separators alone
+        return False
     heads = {row[0] for row in cells}
     if len(heads) < len(cells) or len(cells) < 2:
         return False
