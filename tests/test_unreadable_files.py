@@ -232,7 +232,8 @@ class TestBadTextFiles:
     @pytest.mark.parametrize("separator", [";", ",", "\t", " "])
     def test_a_line_of_separators_alone(self, separator: str) -> None:
         for suffix in (".dat", ".csv", ".edgelist", ".adjlist"):
-            refusal(f"a {{{separator}\n{separator}\n{separator}{separator}\n b -- c{separator}\n", suffix)
+            refusal(f"a {{\nb{separator}\n{separator}\n{separator}{separator}\n b -- c{separator}\n}}\n", suffix)
+            refusal(f'a {{\n"b"{separator}\n"b" -- "c" [4, 3]}}\n{separator}\n}}\n', suffix)
 
     def test_gml_names_nodes_by_label_or_else_by_id(self) -> None:
         named = 'graph [ node [ id 0 label "a" ] node [ id 1 label "b" ] edge [ source 0 target 1 ] ]'
