@@ -358,6 +358,31 @@ class TestArrays:
         with pytest.raises(rb.InvalidGraph, match="from_adjacency takes a matrix, from_edges pairs"):
             rb.is_r_robust(np.zeros((2, 2)), 1)
 
+    def test_what_crashes_scipy_is_unreadable(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        stream = io.BytesIO()
+        scipy.io.savemat(stream, {"A": np.eye(3)})
+        doubles = b"\x09\0\0\0\x48\0\0\0"
+        assert stream.getvalue().count(doubles) == 1
+        damaged = stream.getvalue().replace(doubles, b"\x0e\0\0\0\x48\0\0\0")  # numbers that are said to be a matrix
+        with pytest.raises(UnreadableTopology, match="the MATLAB file cannot be read: it is damaged"):
+            read(damaged, ".mat")
+        for indices, indptr in (([0, 1], [0, 1_000_000, 2]), ([0, 1_000_000], [0, 1, 2]), ([0, -5], [0, 1, 2])):
+            stream = io.BytesIO()
+            np.savez(stream, format=b"csr", shape=(2, 2), data=[1, 1], indices=indices, indptr=indptr)
+            with pytest.raises(UnreadableTopology, match=r"contradicts itself|cannot be read"):
+                read(stream.getvalue(), ".npz")
+        # Where no Python can be started, SciPy reads in this process.
+        monkeypatch.setattr("sys.executable", None)
+        with pytest.raises(UnreadableTopology, match="the MATLAB file cannot be read"):
+            read(b"MATLAB 5.0" + bytes(200), ".mat")
+
+    def test_two_variables_of_one_name_are_two_graphs(self) -> None:
+        stream = io.BytesIO()
+        scipy.io.savemat(stream, {"A": np.eye(3)[::-1]})
+        twice = stream.getvalue() + stream.getvalue()[128:]
+        with pytest.raises(UnreadableTopology, match="two variables of the MATLAB file have one name: keep one"):
+            read(twice, ".mat")
+
     def test_sparse_and_several(self, tmp_path: Path) -> None:
         stream = io.BytesIO()
         scipy.io.savemat(stream, {"A": np.eye(3), "B": np.eye(4)})

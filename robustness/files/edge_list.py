@@ -263,7 +263,7 @@ def _refuse_unknown_names(rows: Rows) -> None:
     """Refuse a first line of words that are no ends of any other link, where links meet: it may name the columns."""
     first, rest = rows.cells[0][:2], rows.cells[1:]
     ends = [cell for row in rest for cell in row[:2]]
-    if any(map(is_number, first)) or len(set(ends)) == len(ends) or first[0] == first[1]:
+    if len(set(first)) < 2 or any(map(is_number, first)) or len(set(ends)) == len(ends):
         return
     if not set(first).isdisjoint(ends):
         return

@@ -1,4 +1,4 @@
-"""Matrices in archives: of SciPy and NumPy (.npz) and of MATLAB (.mat), read by SciPy.
+"""Matrices in archives of SciPy and NumPy (.npz), and what is common to them and MATLAB's.
 
 SciPy comes with the extra ``formats`` and is imported here only. Which way rows are read, and what an entry says, is
 as in :mod:`robustness.files.matrix`.
@@ -9,6 +9,7 @@ from __future__ import annotations
 import io
 import math
 import zipfile
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from robustness.files.matrix import graph_of_pattern, links_in
 from robustness.files.matrix_market import CELL_LIMIT, NODE_LIMIT, graph_of_weights
 from robustness.spelled import counted
 
-__all__ = ["decode_mat", "decode_npz", "graph_of_matrix", "is_sparse"]
+__all__ = ["decode_npz", "graph_of_matrix", "is_sparse", "scipy_module", "the_square_one"]
 
 #: An archive is not unpacked beyond this many bytes.
 BYTE_LIMIT = 2**30
@@ -45,32 +46,17 @@ def decode_npz(data: bytes, options: ReadingOptions) -> Digraph:
         raise UnreadableTopology(f"unpacks to {counted(size, 'byte')}, more than {BYTE_LIMIT}, the most that is read")
     try:
         if {"format", "shape", "data"} <= names:
-            return graph_of_matrix(_scipy("scipy.sparse", "a sparse .npz").load_npz(io.BytesIO(data)), options)
+            return graph_of_matrix(scipy_module("scipy.sparse", "a sparse .npz").load_npz(io.BytesIO(data)), options)
         with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
-            return graph_of_matrix(_the_square_one({name: arrays[name] for name in arrays.files}), options)
+            return graph_of_matrix(the_square_one({name: arrays[name] for name in arrays.files}), options)
     except (UnreadableTopology, MissingExtra):
         raise
     except Exception as problem:  # noqa: BLE001 - NumPy and SciPy raise whatever their parsing runs into
         raise UnreadableTopology(f"the archive cannot be read: {problem}") from None
 
 
-def decode_mat(data: bytes, options: ReadingOptions) -> Digraph:
-    """Return the graph of the one square matrix in a MATLAB file of version 4 to 7."""
-    if data[:10] == b"MATLAB 7.3" or data[1:4] == b"HDF":
-        raise UnreadableTopology("is a MATLAB file of version 7.3: save it with save -v7")
-    scipy_io = _scipy("scipy.io", "MATLAB files")
-    try:
-        found = scipy_io.loadmat(io.BytesIO(data), squeeze_me=False, verify_compressed_data_integrity=True)
-    except Exception as problem:  # noqa: BLE001 - SciPy raises whatever its parsing runs into
-        raise UnreadableTopology(f"the MATLAB file cannot be read: {str(problem) or type(problem).__name__}") from None
-    variables = {name: value for name, value in found.items() if not name.startswith("__")}
-    problem_record = variables.get("Problem")
-    if isinstance(problem_record, np.ndarray) and problem_record.dtype.names and "A" in problem_record.dtype.names:
-        variables = {"Problem.A": problem_record["A"].flat[0]}  # as the SuiteSparse collection writes it
-    return graph_of_matrix(_the_square_one(variables), options)
-
-
-def _the_square_one(matrices: dict[str, Any]) -> Any:
+def the_square_one(matrices: Mapping[str, Any]) -> Any:
+    """Return the one square matrix of numbers among these; of several, the one that is more than a number."""
     square = [
         name
         for name, matrix in matrices.items()
@@ -107,6 +93,11 @@ def graph_of_matrix(matrix: Any, options: ReadingOptions, labels: Any = None) ->
             array.astype(np.float64), lambda row, column: f"row {row}, column {column}: {array[row, column]}"
         )
         return graph_of_pattern(pattern, options, labels, notes)
+    if hasattr(matrix, "check_format"):  # SciPy converts what points outside the matrix, and crashes
+        try:
+            matrix.check_format(full_check=True)
+        except ValueError as problem:
+            raise UnreadableTopology(f"the sparse matrix contradicts itself: {problem}") from None
     entries = matrix.tocsr().tocoo()
     if entries.data.dtype.kind not in "biuf":
         raise UnreadableTopology(f"an adjacency matrix holds numbers or truth values, not {entries.data.dtype}")
@@ -114,7 +105,7 @@ def graph_of_matrix(matrix: Any, options: ReadingOptions, labels: Any = None) ->
     return graph_of_weights(pairs, entries.data.astype(np.float64), matrix.shape[0], options, labels, name=int)
 
 
-def _scipy(module: str, what: str) -> Any:
+def scipy_module(module: str, what: str) -> Any:
     """Return a module of SciPy."""
     import importlib
 
