@@ -235,6 +235,10 @@ class TestBadTextFiles:
             refusal(f"a {{\nb{separator}\n{separator}\n{separator}{separator}\n b -- c{separator}\n}}\n", suffix)
             refusal(f'a {{\n"b"{separator}\n"b" -- "c" [4, 3]}}\n{separator}\n}}\n', suffix)
 
+    def test_lines_of_one_word(self) -> None:
+        for suffix in (".el", ".edgelist", ".txt", ".dat", ".csv", ".tsv"):
+            assert "line 1" in refusal(":Cda\nda\nda\n", suffix)
+
     def test_gml_names_nodes_by_label_or_else_by_id(self) -> None:
         named = 'graph [ node [ id 0 label "a" ] node [ id 1 label "b" ] edge [ source 0 target 1 ] ]'
         assert decode_quietly(named.encode(), ".gml").labels == ("a", "b")
