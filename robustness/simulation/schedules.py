@@ -341,7 +341,7 @@ class Schedule:
     Raises
     ------
     InvalidParameter
-        When the two rules together can exceed tau.
+        When tau is no integer of at least 0, or the two rules together can exceed it.
 
     >>> Schedule(PeriodicUpdates(12)).oldest
     11
@@ -353,6 +353,8 @@ class Schedule:
 
     def __post_init__(self) -> None:
         needed = self.update_times.gap - 1 + self.delay_rule.bound
+        if self.tau is not None:
+            _require_nonnegative("tau", self.tau)
         if self.tau is not None and needed > self.tau:
             raise InvalidParameter(
                 f"values in use are at most tau = {counted(self.tau, 'step')} old, but updates "

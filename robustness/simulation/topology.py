@@ -40,6 +40,11 @@ class Topology:
     def __post_init__(self) -> None:
         if not self.graphs or not self.sequence:
             raise InvalidParameter("a topology has at least one graph and one step: give one")
+        for place in self.sequence:
+            if type(place) is not int or not 0 <= place < len(self.graphs):
+                raise InvalidParameter(
+                    f"the graph of a step is a number from 0 to {len(self.graphs) - 1}, not {place!r}"
+                )
         for graph in self.graphs:
             if graph.labels != self.graphs[0].labels:
                 raise InvalidGraph("the graphs of a time-varying network have one node set: add the missing nodes")

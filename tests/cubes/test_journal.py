@@ -31,11 +31,11 @@ def short_slices(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def half(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A journal that was torn off in the middle, as a kill does."""
-    path = tmp_path / "half"
-    rb.certify(*SMALL, evidence="refutation", state=path)
-    content = path.read_bytes()
-    lines = content.splitlines(keepends=True)
-    assert len(lines) > 6
+    path, lines = tmp_path / "half", list[bytes]()
+    while len(lines) <= 6:  # on a busy machine fewer cubes are split
+        path.unlink(missing_ok=True)
+        rb.certify(*SMALL, evidence="refutation", state=path)
+        lines = path.read_bytes().splitlines(keepends=True)
     path.write_bytes(b"".join(lines[: len(lines) // 2]) + lines[len(lines) // 2][:40])
     return path
 

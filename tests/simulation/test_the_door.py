@@ -14,6 +14,8 @@ from robustness.simulation import ADVERSARIES, SCHEDULES, Scenario, Start, as_to
 from robustness.simulation.adversaries import Alternating, Sine
 from robustness.simulation.reference import simulate_plainly
 from robustness.simulation.replay import decode_run, encode_run
+from robustness.simulation.schedules import Schedule
+from robustness.simulation.topology import Topology
 from robustness.time_varying import TimeVaryingGraph
 
 K5 = nx.complete_graph(5)
@@ -210,3 +212,15 @@ class TestRulesOfOnesOwn:
     def test_cannot_be_recorded(self) -> None:
         with pytest.raises(InvalidParameter, match="only the parts of this package"):
             encode_run(scenario(rule=lambda own, heard: own), random_start(K5, [4]))
+
+
+@pytest.mark.parametrize("tau", [0.0, -1, True, "3", float("nan")])
+def test_the_age_of_values_is_a_whole_number(tau: Any) -> None:
+    with pytest.raises(InvalidParameter, match="tau is an integer of at least 0, not"):
+        Schedule(tau=tau)
+
+
+@pytest.mark.parametrize("place", [0.0, -1, 1, True, "0", None])
+def test_a_step_names_one_of_the_graphs(place: Any) -> None:
+    with pytest.raises(InvalidParameter, match="the graph of a step is a number from 0 to 0, not"):
+        Topology((as_digraph(K5),), (0, place))
