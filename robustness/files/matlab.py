@@ -67,14 +67,17 @@ def _load_beside(data: bytes) -> tuple[dict[str, Any] | str, list[str]]:
     """Return what :func:`load` does, of a process that may crash."""
     if not sys.executable or getattr(sys, "frozen", False):  # no Python that could be started
         return load(data)
-    process = subprocess.run(  # noqa: S603  # our own interpreter and program
-        [sys.executable, "-I", "-c", _CHILD],
-        input=pickle.dumps((sys.path, data)),
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        check=False,
-    )
+    try:
+        process = subprocess.run(  # noqa: S603  # our own interpreter and program
+            [sys.executable, "-I", "-c", _CHILD],
+            input=pickle.dumps((sys.path, data)),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            check=False,
+        )
+    except OSError:  # a container that allows no other process
+        return load(data)
     if process.returncode:
-        return "it is damaged, and SciPy's reader broke off", []
+        return "SciPy's reader broke off: it is damaged, or larger than the memory", []
     said: tuple[dict[str, Any] | str, list[str]] = pickle.loads(process.stdout)  # noqa: S301  # said by our own process
     return said

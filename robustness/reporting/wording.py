@@ -93,8 +93,8 @@ def _without_gate(survey: Survey, total: int) -> str:
     if len(read) == 1:
         which = "the network" if total == 1 else "the one network that was read"
         verdicts = {
-            True: f"T{which[1:]} survives 1 malicious node under {under}.",
-            False: f"T{which[1:]} does not survive 1 malicious node under {under}.",
+            True: f"{which.capitalize()} survives 1 malicious node under {under}.",
+            False: f"{which.capitalize()} does not survive 1 malicious node under {under}.",
             None: f"Whether {which} survives 1 malicious node under {under} was not decided within the limit.",
         }
         return f"{verdicts[_survives_one(read[0])]} Nothing was required of it.{rest}"
